@@ -25,7 +25,7 @@ from pinjoint.components.settings import DIAGRAMS
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
-AXIAL, MOMENT, SHEAR = QUANTITIES = DIAGRAMS
+AXIAL, MOMENT, SHEAR = DIAGRAMS
 FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn of it
 MOST_PIECES = 32  # of a drawn rod
 _LARGEST = 1e6  # pieces that a rod would have to be cut into; such are left out
@@ -46,6 +46,37 @@ class Axes:
     left: Array
     bow: Array
     drift: Array | None = None
+
+    @classmethod
+    def of(cls, model: Model, rows: Rows) -> Axes:
+        """The axes of some rods, as they are drawn.
+
+        Cubics by the slopes of their ends, and what a distributed force adds between: q ξ²(1 − ξ)² L₀⁴/24EI across. In small
+        displacements both together are exact.
+        """
+        rods, state = model.rods, _state(model, rows)
+        particles, scale = model.particles, float(model.settings.displacement_scale)
+        ends = rods.between[rows].astype(np.intp)
+        drawn = particles.position[ends] + particles.displacement[ends] * scale
+        drift = _drift(state)
+        drift = None if drift is None else scale * drift
+        return cls(drawn[:, 0], drawn[:, 1], state.left, scale * (state.cubic + state.sag), drift)
+
+    @classmethod
+    def moved(cls, model: Model, rows: Rows, places: Array, displacement: Array, rotation: Array) -> Axes:
+        """The axes of some rods by small displacements (particles, 2) and rotations (particles,) that lead to places.
+
+        Their ends, at places (particles, 2), are all that is drawn of what was before.
+        """
+        rods = model.rods
+        ends = rods.between[rows].astype(np.intp)
+        difference, length = rods.difference[rows], rods.original_length[rows]
+        left = np.stack([-difference[:, 1], difference[:, 0]], axis=1) / np.maximum(length, 1e-300)[:, None]
+        chord = ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * left).sum(axis=1)
+        rigid = rods.turning_shares[rows] > 0.0
+        slopes = np.where(rigid, length[:, None] * rotation[ends] - chord[:, None], 0.0)
+        slopes = np.where(rigid, slopes, np.where(rigid[:, ::-1], -0.5 * slopes[:, ::-1], 0.0))
+        return cls(places[ends[:, 0]], places[ends[:, 1]], left, _cubic(*slopes.T))
 
     def some(self, which: Rows | NDArray[np.bool_]) -> Axes:
         """Those of some of the rods."""
@@ -81,25 +112,29 @@ class Axes:
         most: Array = np.sqrt(second / 8.0)
         return most
 
+    def pieces(self, rows: Rows, fineness: float) -> Lines | None:
+        """These axes, of the rods in `rows`, cut into pieces flat within `fineness` (m); None where all look straight."""
+        wanted = self.curvature / np.sqrt(fineness)
+        curved = np.flatnonzero((wanted > 1.0) & (wanted < _LARGEST))
+        if not len(curved):
+            return None
+        least = np.array([2, 4, 8, 16, MOST_PIECES])
+        count = least[np.minimum(np.searchsorted(least, wanted[curved]), len(least) - 1)]
+        starts, ends, of = [], [], []
+        for number in np.unique(count).tolist():
+            some = curved[count == number]
+            points = self.some(some).points(np.linspace(0.0, 1.0, number + 1))
+            starts.append(points[:, :-1].reshape(-1, 2))
+            ends.append(points[:, 1:].reshape(-1, 2))
+            of.append(np.repeat(rows[some], number))
+        row = np.concatenate(of)
+        order = np.argsort(row, kind="stable")
+        return Lines(np.concatenate(starts)[order], np.concatenate(ends)[order], row[order])
+
 
 def is_frame(model: Model) -> bool:
     """True if some rod bends, if only by what acts along it between hinges."""
     return bool(model.rods.bending_stiffness.any())
-
-
-def axes(model: Model, rows: Rows) -> Axes:
-    """The axes of some rods, as they are drawn.
-
-    Cubics by the slopes of their ends, and what a distributed force adds between: q ξ²(1 − ξ)² L₀⁴/24EI across. In small
-    displacements both together are exact.
-    """
-    rods, state = model.rods, _state(model, rows)
-    particles, scale = model.particles, float(model.settings.displacement_scale)
-    ends = rods.between[rows].astype(np.intp)
-    drawn = particles.position[ends] + particles.displacement[ends] * scale
-    drift = _drift(state)
-    drift = None if drift is None else scale * drift
-    return Axes(drawn[:, 0], drawn[:, 1], state.left, scale * (state.cubic + state.sag), drift)
 
 
 def deflected(model: Model, row: int, shares: Array) -> tuple[Array, Array]:
@@ -122,22 +157,6 @@ def _drift(state: _State) -> Array | None:
         return None
     shorter = np.where(steep > _STEEP, steep / np.tan(np.maximum(steep, _STEEP)) - 1.0, -(steep**2) / 3.0)
     return length[:, None] * _cubic(*shorter.T)
-
-
-def moved_axes(model: Model, rows: Rows, places: Array, displacement: Array, rotation: Array) -> Axes:
-    """The axes of some rods by small displacements (particles, 2) and rotations (particles,) that lead to places.
-
-    Their ends, at places (particles, 2), are all that is drawn of what was before.
-    """
-    rods = model.rods
-    ends = rods.between[rows].astype(np.intp)
-    difference, length = rods.difference[rows], rods.original_length[rows]
-    left = np.stack([-difference[:, 1], difference[:, 0]], axis=1) / np.maximum(length, 1e-300)[:, None]
-    chord = ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * left).sum(axis=1)
-    rigid = rods.turning_shares[rows] > 0.0
-    slopes = np.where(rigid, length[:, None] * rotation[ends] - chord[:, None], 0.0)
-    slopes = np.where(rigid, slopes, np.where(rigid[:, ::-1], -0.5 * slopes[:, ::-1], 0.0))
-    return Axes(places[ends[:, 0]], places[ends[:, 1]], left, _cubic(*slopes.T))
 
 
 def _cubic(start: Array, end: Array) -> Array:
@@ -236,7 +255,7 @@ def middles(model: Model) -> Array:
     if not is_frame(model):
         return np.empty((0, 2))
     rows = np.flatnonzero(model.rods.bending_stiffness > 0.0)
-    return axes(model, rows).points(np.array([0.25, 0.5, 0.75])).reshape(-1, 2)
+    return Axes.of(model, rows).points(np.array([0.25, 0.5, 0.75])).reshape(-1, 2)
 
 
 class Lines(NamedTuple):
@@ -256,27 +275,7 @@ def curved_lines(model: Model, fineness: float, rows: Rows | None = None) -> Lin
         return None
     stiff = model.rods.bending_stiffness > 0.0
     rows = np.flatnonzero(stiff) if rows is None else rows[stiff[rows]]
-    return pieces(axes(model, rows), rows, fineness)
-
-
-def pieces(found: Axes, rows: Rows, fineness: float) -> Lines | None:
-    """Axes of the rods in `rows` cut into pieces that are flat within `fineness` (m); None where all look straight."""
-    wanted = found.curvature / np.sqrt(fineness)
-    curved = np.flatnonzero((wanted > 1.0) & (wanted < _LARGEST))
-    if not len(curved):
-        return None
-    least = np.array([2, 4, 8, 16, MOST_PIECES])
-    count = least[np.minimum(np.searchsorted(least, wanted[curved]), len(least) - 1)]
-    starts, ends, of = [], [], []
-    for number in np.unique(count).tolist():
-        some = curved[count == number]
-        points = found.some(some).points(np.linspace(0.0, 1.0, number + 1))
-        starts.append(points[:, :-1].reshape(-1, 2))
-        ends.append(points[:, 1:].reshape(-1, 2))
-        of.append(np.repeat(rows[some], number))
-    row = np.concatenate(of)
-    order = np.argsort(row, kind="stable")
-    return Lines(np.concatenate(starts)[order], np.concatenate(ends)[order], row[order])
+    return Axes.of(model, rows).pieces(rows, fineness)
 
 
 def distributed_shares(model: Model) -> Array:

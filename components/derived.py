@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -14,9 +15,6 @@ from pinjoint.components.particle import DEFAULT_MASS
 from pinjoint.components.rod import DEFAULT_STIFFNESS
 from pinjoint.components.table import Table
 from pinjoint.components.world import Derivation, World
-
-FULL_TURN = 2.0 * np.pi  # rad
-DIAGRAM_COLUMNS = ("end_axial_force", "shear", "bending_moment", "end_rotation", "largest_moment")
 
 
 def derives(table: str, targets: str, sources: str) -> Callable[[Callable[[World], None]], Derivation]:
@@ -236,13 +234,13 @@ def chord_rotation(world: World) -> Column:
 def with_full_turns(chord: Column, turning_shares: Column, rotation: Column) -> Column:
     """Rotations of chords (rods,) with those full turns that bring them nearest to the mean of their rigid ends."""
     mean = (turning_shares * rotation).sum(axis=1)
-    turned: Column = chord + FULL_TURN * np.rint((mean - chord) / FULL_TURN)
+    turned: Column = chord + math.tau * np.rint((mean - chord) / math.tau)
     return turned
 
 
 @derives(
     "rods",
-    " ".join(DIAGRAM_COLUMNS),
+    "end_axial_force shear bending_moment end_rotation largest_moment",
     "particles.displacement particles.rotation between difference rest_length axial_force end_moment"
     " distributed_force turning_shares load_shares bending_stiffness thermal_expansion temperature_gradient",
 )
@@ -272,7 +270,7 @@ def diagrams(
     share: float = 1.0,
     first_order: bool = False,
 ) -> Mapping[str, Column]:
-    """The columns DIAGRAM_COLUMNS of all rods, (rods, 2), with so much of their distributed forces.
+    """The columns of `present_diagrams` of all rods, (rods, 2), with so much of their distributed forces.
 
     axis, length, chord: directions (rods, 2), lengths (m) and rotations (rad) of the chords; rotation: of the particles at
     both ends, (rods, 2). forces: axial (rods,), and moments on both ends, counter-clockwise (rods, 2).
@@ -355,15 +353,4 @@ def _largest_moment(ends: Column, slopes: Column, thrust: Column, load: Column, 
     return np.stack([values[chosen, rows], found[chosen, rows] * length], axis=1)
 
 
-DERIVATIONS = (
-    displacement_scale,
-    lengths,
-    stiffnesses,
-    masses,
-    limits,
-    bending,
-    inertias,
-    present_diagrams,
-    constant_moments,
-    constant_forces,
-)
+DERIVATIONS = [known for known in globals().copy().values() if isinstance(known, Derivation)]  # all those above

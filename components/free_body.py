@@ -55,17 +55,17 @@ class Apart(NamedTuple):
     left_over: Vectors
     left_over_moment: Vectors
 
-
-def apart(model: Model) -> Apart:
-    """A model taken apart as it is now."""
-    pull, along = _pulls(model)
-    on_ends = np.zeros((len(pull), 2, 3))
-    on_ends[:, 1, :2] = pull[:, None] * along
-    on_ends[:, 0, :2] = -on_ends[:, 1, :2]
-    if is_frame(model) or model.rods.distributed_force.any():
-        on_ends += _of_bending(model, along)
-    rest = _left_over(model, on_ends)
-    return Apart(pull, along, on_ends, rest[:, :2], rest[:, 2])
+    @classmethod
+    def of(cls, model: Model) -> Apart:
+        """A model taken apart as it is now."""
+        pull, along = _pulls(model)
+        on_ends = np.zeros((len(pull), 2, 3))
+        on_ends[:, 1, :2] = pull[:, None] * along
+        on_ends[:, 0, :2] = -on_ends[:, 1, :2]
+        if is_frame(model) or model.rods.distributed_force.any():
+            on_ends += _of_bending(model, along)
+        rest = _left_over(model, on_ends)
+        return cls(pull, along, on_ends, rest[:, :2], rest[:, 2])
 
 
 def _pulls(model: Model) -> tuple[Vectors, Vectors]:
@@ -125,7 +125,7 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
     known: the model taken apart, if there are several joints to ask for.
     """
     particles, rods, environment = model.particles, model.rods, model.environment
-    known = known or apart(model)
+    known = known or Apart.of(model)
     found = []
     for rod, end in np.argwhere(rods.between == row).tolist():
         x, y, turn = (-known.on_ends[rod, end]).tolist()
@@ -166,7 +166,7 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
 
 def on_rod(model: Model, row: int) -> list[Force]:
     """The forces and moments of its two joints on a rod, and the force distributed along it."""
-    known, rods = apart(model), model.rods
+    known, rods = Apart.of(model), model.rods
     on_ends, along = known.on_ends[row].tolist(), known.along[row]
     names, length = model.particles.names, float(rods.length[row])
     first, last = rods.between[row].tolist()

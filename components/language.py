@@ -80,23 +80,6 @@ def speak(code: str) -> None:
     _SPOKEN.code, _SPOKEN.catalogue = code, catalogue
 
 
-def add_catalogues(domain: str, folder: Path) -> None:
-    """Look up what ours do not hold in the catalogues of a mod, too: FOLDER/pt/LC_MESSAGES/DOMAIN.mo.
-
-    Raises ValueError if one cannot be read.
-    """
-    for code in LANGUAGES:
-        try:
-            gettext.translation(domain, folder, languages=[code], fallback=True)
-        except Exception as error:  # whatever damaged bytes lead to
-            place = folder / code / "LC_MESSAGES" / f"{domain}.mo"
-            raise ValueError(
-                tr("The catalogue {file} cannot be read; compile it again.", file=place)
-            ) from error
-    EXTENSIONS.catalogues[domain] = folder
-    speak(_SPOKEN.code)
-
-
 @contextmanager
 def spoken(code: str) -> Iterator[None]:
     """Say everything in a language for a while; "": in the present one. Raises ValueError if there is no such language."""

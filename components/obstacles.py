@@ -16,7 +16,6 @@ from pinjoint.components.language import tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.table import Table
-from pinjoint.components.wording import quoted
 
 Floats = NDArray[np.float64]
 
@@ -34,6 +33,35 @@ class Pieces:
     radius: Floats | float = 0.0
     restitution: Floats | float = np.nan
 
+    def check(self, table: Table[Any], source: str) -> None:
+        """Raise ValueError, naming the `source` that made them, where they are none of elements of a table."""
+        ends, owner, count = np.asarray(self.ends, dtype=np.float64), np.asarray(self.owner), len(self.owner)
+        if ends.shape != (count, 2, 2):
+            raise WrongValue(
+                "{source}: `ends` has the shape {shape} for {count} pieces; give each piece two points [x, y].",
+                source=source,
+                shape=ends.shape,
+                count=count,
+            )
+        radius, restitution = (np.broadcast_to(values, count) for values in (self.radius, self.restitution))
+        if not np.isfinite(ends).all() or not (radius >= 0.0).all() or not np.isfinite(radius).all():
+            raise WrongValue(
+                "{source}: an end or a radius is not finite, or a radius is below 0; correct it.", source=source
+            )
+        if ((restitution < 0.0) | (restitution > 1.0)).any():
+            raise WrongValue(
+                "{source}: a restitution is not between 0 and 1; give such a number, or NaN for that of the settings.",
+                source=source,
+            )
+        for row in owner[(owner < 0) | (owner >= table.count)][:1].tolist():
+            raise WrongValue(
+                "{source}: a piece belongs to row {row}, but there are only {count} {table}; rows count from 0.",
+                source=source,
+                row=row,
+                count=table.count,
+                table=tr(table.name),
+            )
+
 
 @dataclass(frozen=True)
 class Obstacles:
@@ -50,41 +78,6 @@ class Obstacles:
 
     def __len__(self) -> int:
         return len(self.radius)
-
-
-def check_pieces(table: Table[Any], pieces: Pieces, source: str) -> Pieces:
-    """The pieces that a mod's shape returned. Raises TypeError or ValueError, naming `source`."""
-    if not isinstance(pieces, Pieces):
-        raise TypeError(
-            tr("{source} returned {value}; it must return Pieces.", source=source, value=quoted(pieces))
-        )
-    ends, owner, count = np.asarray(pieces.ends, dtype=np.float64), np.asarray(pieces.owner), len(pieces.owner)
-    if ends.shape != (count, 2, 2):
-        raise WrongValue(
-            "{source}: `ends` has the shape {shape} for {count} pieces; give each piece two points [x, y].",
-            source=source,
-            shape=ends.shape,
-            count=count,
-        )
-    radius, restitution = (np.broadcast_to(values, count) for values in (pieces.radius, pieces.restitution))
-    if not np.isfinite(ends).all() or not (radius >= 0.0).all() or not np.isfinite(radius).all():
-        raise WrongValue(
-            "{source}: an end or a radius is not finite, or a radius is below 0; correct it.", source=source
-        )
-    if ((restitution < 0.0) | (restitution > 1.0)).any():
-        raise WrongValue(
-            "{source}: a restitution is not between 0 and 1; give such a number, or NaN for that of the settings.",
-            source=source,
-        )
-    for row in owner[(owner < 0) | (owner >= table.count)][:1].tolist():
-        raise WrongValue(
-            "{source}: a piece belongs to row {row}, but there are only {count} {table}; rows count from 0.",
-            source=source,
-            row=row,
-            count=table.count,
-            table=tr(table.name),
-        )
-    return pieces
 
 
 NO_OBSTACLES = Obstacles(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0), np.zeros(0), [])

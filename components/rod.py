@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from pinjoint.components.field import (
     CM,
@@ -27,11 +27,11 @@ from pinjoint.components.particle import Particle, rods_without_length
 from pinjoint.components.section import (
     MATERIALS,
     SECTIONS,
+    Material,
     by_area,
     check_material,
     check_section,
     given_by,
-    material_named,
 )
 from pinjoint.components.table import Table, flags
 from pinjoint.components.world import World
@@ -320,7 +320,7 @@ def _heed_names(table: Table[Any], rows: NDArray[np.intp], changed: Collection[s
 
 def _follow_names(table: Table[Any], rod: Rod) -> None:
     given = given_by(rod.section, rod.material)
-    substance = material_named(rod.material) if rod.material is not None else None
+    substance = Material.named(rod.material) if rod.material is not None else None
     if rod.section is None and substance is not None and rod.area is not None:
         given |= by_area(substance, rod.area)
     known = {"stiffness": rod.section or rod.area, "bending_stiffness": rod.section or rod.second_moment}
@@ -354,12 +354,6 @@ def _check_warmth(table: Table[Any], rows: NDArray[np.intp]) -> None:
             rod=table.world.describe(table[row]),
             change=change,
         )
-
-
-def spawn_rods(world: World, between: ArrayLike, **columns: Any) -> list[Rod]:
-    """Create rods between pairs of particle rows, shape (n, 2), in bulk. Raises FieldError."""
-    ends = np.asarray(between).reshape(-1, 2)
-    return world.create(Rod, len(ends), between=ends, **columns)
 
 
 def _check_ends(table: Table[Any], rows: NDArray[np.intp]) -> None:

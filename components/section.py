@@ -19,7 +19,6 @@ from pinjoint.components.language import joined, marked
 from pinjoint.components.wording import cut, missing
 
 USUAL_SECTION, USUAL_MATERIAL = "IPE 200", "S235"  # of members of which nothing else is known
-RECTANGLE = "rectangle 300×500"  # the form of such a name: width × depth in mm
 _RECTANGLE = re.compile(r"rect(?:angle)? (\d+(?:\.\d+)?)×(\d+(?:\.\d+)?)")
 _SQUARE = re.compile(r"(shs [\d.]+)×([\d.]+)×([\d.]+)")  # with both widths, as catalogues write it
 _MPA, _GPA = 1e3, 1e6  # kN/m²
@@ -27,12 +26,23 @@ _MPA, _GPA = 1e3, 1e6  # kN/m²
 
 @dataclass(frozen=True)
 class Section:
-    """A cross-section, with area (m²), second moment of area (m⁴) and plastic section modulus (m³)."""
+    """A cross-section, with area (m²) and second moment of area (m⁴)."""
 
     name: str
     area: float
     second_moment: float
-    plastic_modulus: float
+
+    @classmethod
+    def named(cls, name: str) -> Section | None:
+        """The section of a name, whatever its capitals and spaces: "ipe200", "SHS 100x5", "rectangle 300x500"."""
+        wanted = _folded(name)
+        if found := _RECTANGLE.fullmatch(wanted):
+            b, h = map(float, found.groups())
+            sound = 0.0 < b < LARGEST and 0.0 < h < LARGEST
+            return _section(f"rectangle {b:.12g}×{h:.12g}", rectangle(b, h)) if sound else None
+        if (square := _SQUARE.fullmatch(wanted)) and square[1] == f"shs {square[2]}":
+            wanted = f"{square[1]}×{square[3]}"
+        return next((each for known, each in SECTIONS.items() if _folded(known) == wanted), None)
 
 
 @dataclass(frozen=True)
@@ -46,12 +56,18 @@ class Material:
     compression: float
     expansion: float
 
+    @classmethod
+    def named(cls, name: str) -> Material | None:
+        """The material of a name, whatever its capitals and spaces."""
+        wanted = _folded(name)
+        return next((each for known, each in MATERIALS.items() if _folded(known) == wanted), None)
+
 
 # --- properties from dimensions --------------------------------------------------------------------------
 
 
-def rolled(h: float, b: float, t_w: float, t_f: float, r: float) -> tuple[float, float, float]:
-    """A, I and W_pl of an I-section with fillets of radius r between web and flanges."""
+def rolled(h: float, b: float, t_w: float, t_f: float, r: float) -> tuple[float, float]:
+    """A and I of an I-section with fillets of radius r between web and flanges."""
     clear = h - 2.0 * t_f
     corner = (1.0 - math.pi / 4.0) * r**2  # each of four fillets: a square less a quarter of a disc
     centre = (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi) * r  # of it, from the flange
@@ -59,46 +75,40 @@ def rolled(h: float, b: float, t_w: float, t_f: float, r: float) -> tuple[float,
     arm = 0.5 * clear - centre
     area = 2.0 * b * t_f + clear * t_w + 4.0 * corner
     second = (b * h**3 - (b - t_w) * clear**3) / 12.0 + 4.0 * (own + corner * arm**2)
-    plastic = 0.25 * t_w * h**2 + (b - t_w) * (h - t_f) * t_f + 4.0 * corner * arm
-    return area, second, plastic
+    return area, second
 
 
-def tube(d: float, t: float) -> tuple[float, float, float]:
-    """A, I and W_pl of a circular hollow section."""
+def tube(d: float, t: float) -> tuple[float, float]:
+    """A and I of a circular hollow section."""
     inner = d - 2.0 * t
-    area, second = math.pi / 4.0 * (d**2 - inner**2), math.pi / 64.0 * (d**4 - inner**4)
-    return area, second, (d**3 - inner**3) / 6.0
+    return math.pi / 4.0 * (d**2 - inner**2), math.pi / 64.0 * (d**4 - inner**4)
 
 
-def box(b: float, t: float) -> tuple[float, float, float]:
-    """A, I and W_pl of a square hollow section, with corners of radius 1.5 t outside and t inside.
+def box(b: float, t: float) -> tuple[float, float]:
+    """A and I of a square hollow section, with corners of radius 1.5 t outside and t inside.
 
     Corners are cut away as the fillets of an I-section without flanges are added.
     """
     c = b - 2.0 * t
     parts = rectangle(b, b), rolled(b, 0.0, 0.0, 0.0, 1.5 * t), rectangle(c, c), rolled(c, 0.0, 0.0, 0.0, t)
-    area, second, plastic = (
-        (outer - cut) - (inner - left) for outer, cut, inner, left in zip(*parts, strict=True)
-    )
-    return area, second, plastic
+    area, second = ((outer - cut) - (inner - left) for outer, cut, inner, left in zip(*parts, strict=True))
+    return area, second
 
 
-def rectangle(b: float, h: float) -> tuple[float, float, float]:
-    """A, I and W_pl of a solid rectangle."""
-    return b * h, b * h**3 / 12.0, b * h**2 / 4.0
+def rectangle(b: float, h: float) -> tuple[float, float]:
+    """A and I of a solid rectangle."""
+    return b * h, b * h**3 / 12.0
 
 
-_SHAPES: dict[str, Callable[..., tuple[float, float, float]]] = {"I": rolled, "tube": tube, "box": box}
+_SHAPES: dict[str, Callable[..., tuple[float, float]]] = {"I": rolled, "tube": tube, "box": box}
 
 
 # --- by name ---------------------------------------------------------------------------------------------
 
 
-def _section(name: str, in_mm: tuple[float, float, float]) -> Section:
-    area, second, plastic = (
-        float(f"{value * 10.0 ** (-3 * power):.6g}") for value, power in zip(in_mm, (2, 4, 3), strict=True)
-    )
-    return Section(name, area, second, plastic)
+def _section(name: str, in_mm: tuple[float, float]) -> Section:
+    area, second = in_mm
+    return Section(name, float(f"{area * 1e-6:.6g}"), float(f"{second * 1e-12:.6g}"))
 
 
 _HELD = json.loads((Path(__file__).parents[1] / "assets" / "sections.json").read_text(encoding="utf-8"))
@@ -120,24 +130,6 @@ MATERIALS = {
 }
 
 
-def section_named(name: str) -> Section | None:
-    """The section of a name, whatever its capitals and spaces: "ipe200", "SHS 100x5", "rectangle 300x500"."""
-    wanted = _folded(name)
-    if found := _RECTANGLE.fullmatch(wanted):
-        b, h = map(float, found.groups())
-        sound = 0.0 < b < LARGEST and 0.0 < h < LARGEST
-        return _section(f"rectangle {b:.12g}×{h:.12g}", rectangle(b, h)) if sound else None
-    if (square := _SQUARE.fullmatch(wanted)) and square[1] == f"shs {square[2]}":
-        wanted = f"{square[1]}×{square[3]}"
-    return next((each for known, each in SECTIONS.items() if _folded(known) == wanted), None)
-
-
-def material_named(name: str) -> Material | None:
-    """The material of a name, whatever its capitals and spaces."""
-    wanted = _folded(name)
-    return next((each for known, each in MATERIALS.items() if _folded(known) == wanted), None)
-
-
 @cache
 def _folded(name: str) -> str:
     tidy = re.sub(r"\s+", "", name).casefold()
@@ -147,7 +139,7 @@ def _folded(name: str) -> str:
 
 def check_section(value: str, where: str) -> str:
     """The usual spelling of a section's name, or FieldError."""
-    if (found := section_named(value)) is not None:
+    if (found := Section.named(value)) is not None:
         return found.name
     family = value.strip()[:3].upper()
     sizes = [name.removeprefix(f"{family} ") for name in SECTIONS if name.startswith(f"{family} ")]
@@ -164,13 +156,13 @@ def check_section(value: str, where: str) -> str:
         " SHS 100×5 or {rectangle} (mm).",
         where=where,
         value=cut(value),
-        rectangle=RECTANGLE,
+        rectangle="rectangle 300×500",
     )
 
 
 def check_material(value: str, where: str) -> str:
     """The usual spelling of a material's name, or FieldError."""
-    found = material_named(value)
+    found = Material.named(value)
     if found is None:
         problem = missing(marked("materials"), value, MATERIALS)
         raise FieldError(joined([f"{where}:", problem]))
@@ -186,11 +178,11 @@ NAMES = ("section", "material")  # Fields of rods
 def given_by(section: str | None = None, material: str | None = None) -> dict[str, Any]:
     """What rods of a section and a material are given, by Field; a section alone is of the usual material."""
     found: dict[str, Any] = {}
-    profile = section_named(section) if section is not None else None
+    profile = Section.named(section) if section is not None else None
     if profile is not None:
         found = {"area": profile.area, "second_moment": profile.second_moment}
         material = USUAL_MATERIAL if material is None else material
-    substance = material_named(material) if material is not None else None
+    substance = Material.named(material) if material is not None else None
     if substance is not None:
         found["material"] = substance.name
         found |= {"youngs_modulus": substance.youngs_modulus, "thermal_expansion": substance.expansion}

@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from pinjoint.components.additions import outlines
 from pinjoint.components.bent import AXIAL, middles
 from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
-from pinjoint.components.card import Card
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.slider import ARROW, SUPPORT, Place, SliderStack
-from pinjoint.components.toolbar import Menu, Toolbar
+from pinjoint.components.toolbar import Menu, Tool, Toolbar
 
 CONVENTIONS = TEXTBOOK, THESIS = ("textbook", "thesis")  # of the force method
 
@@ -148,6 +147,30 @@ class Readout:
 
 
 @dataclass(frozen=True)
+class Card:
+    """A task of a lesson as it stands, for drawing and clicking.
+
+    title: of the lesson. progress: which task of how many, and done: those that were done. paragraphs: the task.
+    choices: (text, chosen) of possible answers, with the action of each in `answers`. entry: what was typed, with its unit;
+    None: nothing is to be typed. said: what is said of the last check, or a hint, and its `mood`: "right", "wrong", "hint".
+    buttons: the first is the next thing to do. first: by how many lines it is scrolled on, or back if negative.
+    """
+
+    title: str
+    progress: str = ""
+    count: int = 0
+    at: int = 0
+    done: frozenset[int] = frozenset()
+    paragraphs: tuple[str, ...] = ()
+    choices: tuple[tuple[str, bool], ...] = ()
+    entry: str | None = None
+    said: tuple[str, ...] = ()
+    mood: str = ""
+    buttons: tuple[Tool, ...] = ()
+    first: int = 0
+
+
+@dataclass(frozen=True)
 class Shape:
     """A mechanism, or a mode of buckling or vibration, to be drawn over the model.
 
@@ -263,10 +286,11 @@ class View:
         return tuple((vars(self) | copies | {"flashes": self.flashes.tobytes()}).values())
 
     def fit(self, model: Model) -> None:
-        """Let the camera show the whole model, clear of the sliders, and with room for diagrams below the legend."""
+        """Let the camera show the whole model, clear of the sliders, and with room for arrows or diagrams above it."""
         room = self.room
-        if self.legend and bends(model):
-            missing = min(ABOVE * self.pixel_ratio - LEAST_MARGIN * room.height, LEAST_MARGIN / 2 * room.height)
+        if self.legend:
+            above = ABOVE if bends(model) else SUPPORT + ARROW
+            missing = min(above * self.pixel_ratio - LEAST_MARGIN * room.height, LEAST_MARGIN / 2 * room.height)
             top, kept = round(max(missing, 0.0)), 1.0 - LEAST_MARGIN  # the margin shrinks with the room
             room = replace(room, top=room.top + top, height=max(room.height - round(top / kept), 1))
         self.camera.fit(drawn_places(model), MARGIN, room, self.pixel_ratio)

@@ -503,10 +503,6 @@ class World:
         if handle.exists:
             self._carry(tag, self._carriers(tag) | self._flags([handle]))
 
-    def untag(self, handle: Handle, tag: type) -> None:
-        """Take a tag off an entity, if it carries it."""
-        self._carry(tag, self._carriers(tag) & ~self._flags([handle]))
-
     def tag_only(self, handles: Iterable[Handle], tag: type) -> None:
         """Let exactly these entities, those of them that exist, carry a tag."""
         self._carry(tag, self._flags(handles) & (self.row_of_entity >= 0))

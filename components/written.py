@@ -143,9 +143,11 @@ def share(value: float, digits: int = 3) -> str:
 
 
 def time(seconds: float, digits: int = DIGITS) -> str:
-    """A time with an SI prefix, such as "1.234 ms"; above 1000 s plain seconds."""
+    """A time with an SI prefix, such as "1.234 ms"; above 1000 s plain seconds, below 1 ps a power of ten of them."""
     if seconds == 0.0:
         return "0 s"
+    if abs(seconds) < 1e-12:
+        return f"{number(seconds, digits)} s"
     rounded = float(f"{seconds:.{digits - 1}e}")
     factor, prefix = next((f, p) for f, p in _PREFIXES if abs(rounded) >= 0.1 * f or f == 1e-9)
     places = max(digits - 1 - math.floor(math.log10(abs(rounded) / factor) + 1e-9), 0)

@@ -4,7 +4,7 @@ import os
 import sys
 import warnings
 
-from pinjoint.interrupts import end_in_time, ended_with, quietly_interrupted
+from pinjoint.interrupts import end_in_time, ended_with, mark_interrupts, quietly_interrupted
 from pinjoint.version import __version__
 
 
@@ -30,6 +30,7 @@ def main() -> int:
             tell(str(error))
             return 2
     end_in_time()
+    mark_interrupts()
     with told():
         status = command_line.main(words)
     return ended_with(status)

@@ -17,6 +17,7 @@ from types import FrameType
 
 CLOSING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 PATIENCE = 1.5  # s that what is in progress may take to end before it is cut off
+AGAIN = 0.02  # s after which what could not be raised is tried again
 LEFT_OVER = 2.0  # s that threads may take to end after the program
 
 
@@ -89,12 +90,23 @@ class Interrupt(KeyboardInterrupt):
     """Ctrl+C."""
 
 
+def interrupt(number: int, frame: FrameType | None) -> None:
+    """Raise Interrupt; a little later in what LLVM calls while it compiles, where nothing raised goes on."""
+
+    def again() -> None:
+        if signal.getsignal(number) is interrupt:
+            signal.raise_signal(number)
+
+    while frame is not None:
+        if frame.f_code.co_name.startswith("_raw_object_cache"):
+            threading.Timer(AGAIN, again).start()
+            return
+        frame = frame.f_back
+    raise Interrupt
+
+
 def mark_interrupts() -> None:
     """From now on Ctrl+C raises Interrupt, wherever Python would raise KeyboardInterrupt."""
-
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        raise Interrupt
-
     usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if usual and threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGINT, interrupt)

@@ -79,6 +79,10 @@ class Mod(Protocol):
     """The extension that brought a system; see game/mods/mod.py."""
 
     @property
+    def included(self) -> bool:
+        """True if it comes with the program."""
+
+    @property
     def off(self) -> bool:
         """True if it was left out or switched off."""
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.load import CONSTANT, HISTORIES
 from pinjoint.components.model import Model
 from pinjoint.systems.base import Law, StepSystem, System
 from pinjoint.systems.collision.system import Collision
 from pinjoint.systems.edit.pull import Pull
-from pinjoint.systems.loads.system import varying_loads
+from pinjoint.systems.loads.system import VaryingLoads
 from pinjoint.systems.physics.system import (
     AxialDamping,
     AxialDampingOfCables,
@@ -39,7 +40,7 @@ def step_systems() -> list[StepSystem]:
         Yielding(),
         FirstYield(),
         Collision(),
-        *varying_loads(),
+        *(VaryingLoads(kind) for kind in HISTORIES.values() if kind.name != CONSTANT["kind"]),
     ]
 
 

@@ -13,7 +13,7 @@ from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
 from pinjoint.mods.loading import load, mods_folder
-from pinjoint.mods.mod import INCLUDED, Mod, ModError
+from pinjoint.mods.mod import Mod, ModError
 from pinjoint.mods.skeleton import write_skeleton
 from pinjoint.version import __version__
 
@@ -57,7 +57,7 @@ def _new(name: str, into: Path) -> int:
 
 def _described(mod: Mod) -> dict[str, Any]:
     """A mod and its state as plain data."""
-    state = "included" if mod.source == INCLUDED else "loaded"
+    state = "included" if mod.included else "loaded"
     return {
         "name": mod.name,
         "version": mod.version,

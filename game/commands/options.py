@@ -17,7 +17,6 @@ from pinjoint.components.model import Model
 from pinjoint.components.settings import INTEGRATORS
 from pinjoint.documents import models
 from pinjoint.documents.format import missing_mods
-from pinjoint.mods.mod import INCLUDED
 from pinjoint.paths import apply_override
 from pinjoint.streams import tell
 from pinjoint.systems.base import CORES, DEFAULT_LIMIT, System
@@ -76,7 +75,7 @@ def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> S
 
 def headless_of(options: argparse.Namespace) -> Headless:
     """Likewise without scenes, for which only systems of mods may ask."""
-    if any(mod.loaded and mod.source != INCLUDED for mod in EXTENSIONS.mods):
+    if any(mod.loaded and not mod.included for mod in EXTENSIONS.mods):
         return session_of(options)
     from pinjoint.headless import Headless
 

@@ -17,13 +17,14 @@ from pinjoint.commands.analysis import FOUND
 from pinjoint.commands.arguments import Parser, UsageError, positive
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
 from pinjoint.commands.output import writable, writing
-from pinjoint.components.bent import QUANTITIES
 from pinjoint.components.language import tr
+from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.view import drawn_places
 from pinjoint.documents.models import replace
 from pinjoint.documents.shapes import numbered
 from pinjoint.session import Session
+from pinjoint.streams import tell
 from pinjoint.systems.base import DEFAULT_LIMIT
 from pinjoint.systems.physics.pace import natural_pace
 from pinjoint.systems.render.labels.placing import Placed
@@ -56,7 +57,10 @@ def command(words: Sequence[str]) -> int:
     draw = _animate if options.output.lower().endswith(".gif") else _draw
     with writing(options.output):
         status = draw(session, options, (width, height))
-    return ANSWERED if status in FOUND else NOT_ANSWERED
+    if status in FOUND:
+        return ANSWERED
+    tell(session.simulation.message)
+    return NOT_ANSWERED
 
 
 def _parser() -> Parser:
@@ -79,7 +83,7 @@ def _parser() -> Parser:
     parser.add_argument("--diagrams", action="store_true", help=tr("draw all force diagrams"))
     parser.add_argument(
         "--diagrams-of",
-        choices=QUANTITIES,
+        choices=DIAGRAMS,
         help=tr(
             "draw all diagrams of one quantity: the axial force N, or where rods bend the bending moment M or the shear"
             " force V"

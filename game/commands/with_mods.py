@@ -14,7 +14,7 @@ from pinjoint.components.language import marked, tr
 from pinjoint.documents.library import data_folder
 from pinjoint.documents.models import lock_file
 from pinjoint.mods.loading import load
-from pinjoint.mods.mod import INCLUDED, LOG, ModError
+from pinjoint.mods.mod import LOG, ModError
 from pinjoint.streams import tell
 
 LEFT_OUT = marked(
@@ -65,7 +65,7 @@ def crashed() -> bool:
 @contextmanager
 def in_use() -> Iterator[None]:
     """Keep a log and a lock file while a window is open with a person's mods; only a crash leaves the file behind."""
-    if not any(mod.loaded and mod.source != INCLUDED for mod in EXTENSIONS.mods):
+    if not any(mod.loaded and not mod.included for mod in EXTENSIONS.mods):
         yield
         return
     path = data_folder() / "running" / f"{uuid.uuid4().hex}.lock"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pinjoint.components.field import Role
-from pinjoint.components.free_body import apart
+from pinjoint.components.free_body import Apart
 from pinjoint.components.load import CONSTANT, static_factor
 from pinjoint.components.model import Model
 from pinjoint.components.snapshot import Snapshot
@@ -188,7 +188,7 @@ def _histories(model: Model) -> set[str]:
 
 def _balanced(model: Model) -> bool:
     """True if forces and moments on all joints leave nothing over."""
-    known = apart(model)
+    known = Apart.of(model)
     largest = float(np.abs(known.on_ends[..., :2]).max(initial=0.0))
     reach = float(model.rods.length.max(initial=0.0))
     return bool(

@@ -12,6 +12,7 @@ from pinjoint.components.field import Column, Role
 from pinjoint.components.language import joined, plural, tr
 from pinjoint.components.load import load_factor
 from pinjoint.components.model import Model
+from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.obstacles import obstacles
 from pinjoint.components.rod import can_yield, has_cables
 from pinjoint.systems.base import StopReason
@@ -214,7 +215,7 @@ class Chronicle:
         model, rods = self._model, self._model.rods
         edited = model.newest(Role.DOCUMENT)
         if self._stands[0] != edited:
-            self._stands = edited, is_held(model, at_first=True)
+            self._stands = edited, not incomputable(model) and is_held(model, at_first=True)
         if not (self._stands[1] and model.clock.steps) or is_held(model):
             return
         yielding = np.flatnonzero(rods.yielding) if can_yield(model) else np.empty(0, dtype=np.intp)

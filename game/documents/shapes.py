@@ -14,6 +14,7 @@ from pinjoint.components.field import Role
 from pinjoint.components.language import marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
+from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.view import Shape
 from pinjoint.components.wording import cut
 from pinjoint.documents.assessment import LARGEST
@@ -86,10 +87,16 @@ def _first_ones(model: Model) -> list[Shape]:
             "This takes long for more than {count} rods; use the command: pinjoint render --mode 1",
             count=LARGEST,
         )
+    _check_range(model)
     found = [*mechanism_shapes(model, LOWEST), *_meant(model), *mode_shapes(model, LOWEST)]
     if not found:
         raise NoShape("There are no mechanisms and no modes, because no rod has an end that is free to move.")
     return found
+
+
+def _check_range(model: Model) -> None:
+    if problem := incomputable(model):
+        raise NoShape(problem)
 
 
 def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
@@ -201,6 +208,7 @@ def numbered(model: Model, kind: str, number: int) -> Shape:
         marked("buckling mode"): buckling_shapes,
         marked("mode"): mode_shapes,
     }
+    _check_range(model)
     found = find[kind](model)
     if not found:
         if kind == "mechanism":

@@ -202,14 +202,15 @@ def _end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
     model, view = context.model, context.view
     if view.tool != "hinge" or pick_particle(model, view, pixel) is not None:
         return None
-    end = pick_end(model, view, pixel)
-    if end is None:
+    found = pick_end(model, view, pixel)
+    if found is None:
         return None
-    at, rod, particle = ring_of(model, view, end), end.rod.name, end.rod.ends[end.number].name
+    rod, end = found
+    at, particle = ring_of(model, view, rod, end), rod.ends[end].name
     label = (
-        tr("hinge {rod} at {particle}", rod=rod, particle=particle)
-        if is_rigid(end.rod, end.number)
-        else tr("make {rod} rigid at {particle}", rod=rod, particle=particle)
+        tr("hinge {rod} at {particle}", rod=rod.name, particle=particle)
+        if is_rigid(rod, end)
+        else tr("make {rod} rigid at {particle}", rod=rod.name, particle=particle)
     )
     return Preview("hinge", at, at, label)
 

@@ -2,7 +2,7 @@
 
 A lesson is a script (game/scripts/script.py) some of whose lines are tasks. `tasks` reads them; `judging` finds with the
 engine whether a task is done, on a copy of the session where that takes a run; a `Course` is a lesson in a session, of
-which a window shows the card (components/card.py); `progress` keeps what a person did; `checking` plays a lesson without
+which a window shows the card (components/view.py); `progress` keeps what a person did; `checking` plays a lesson without
 a window, with its solutions and its wrong answers, for `pinjoint play`.
 
 A task asks for one of four things:

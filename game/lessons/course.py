@@ -6,11 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from pinjoint.components.card import Card
 from pinjoint.components.language import decimals, joined, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.toolbar import Tool
-from pinjoint.components.view import Shape, View
+from pinjoint.components.view import Card, Shape, View
 from pinjoint.documents.document import document
 from pinjoint.documents.models import ModelError, load
 from pinjoint.documents.open_documents import ModelFile

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+import gettext
 from collections.abc import Callable, Container, MutableMapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pinjoint.commands import Command
-from pinjoint.components.additions import Component, add_component, checked_kind
+from pinjoint.components.additions import Component
 from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.field import Role
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import add_catalogues, joined, language, marked, speak, tr
+from pinjoint.components.language import LANGUAGES, joined, language, marked, speak, tr
 from pinjoint.components.load import HISTORIES, HistoryKind
 from pinjoint.components.mistake import WrongValue
+from pinjoint.components.model import KINDS, Model
 from pinjoint.components.obstacles import Shape
 from pinjoint.components.table import fields_of
+from pinjoint.components.wording import is_identifier
 from pinjoint.documents import models
 from pinjoint.documents.format import Upgrade
 from pinjoint.mods.declared import check
 from pinjoint.mods.guard import Guard, Panel
-from pinjoint.mods.mod import INCLUDED, Mod, ModError
+from pinjoint.mods.mod import Mod, ModError
 from pinjoint.systems.base import Integrator, System
 from pinjoint.systems.input.actions import ACTIONS, LIVE, Action, Binding, Perform
 from pinjoint.systems.physics.integrators import INTEGRATORS
@@ -50,19 +54,86 @@ class App:
     # --- data and physics ----------------------------------------------------------------------------
 
     def component(self, component: type[Component]) -> None:
-        """Add the Fields of a component to all elements of its kind; see components.Component."""
-        self._guard.checkers(fields_of(component))
-        self._undo += [partial(delattr, component.of, name) for name in add_component(self.name, component)]
+        """Add the Fields of a component to all elements of its kind; see components.Component.
+
+        Raises ValueError if a column of that name is there, or a Field is none that a mod can add.
+        """
+        mod, kind, fields = self.name, component.of, fields_of(component)
+        self._guard.checkers(fields)
+        names = [f"{mod}_{field.name.removeprefix(f'{mod}_')}" for field in fields]
+        for field, name in zip(fields, names, strict=True):
+            if hasattr(kind, name):
+                raise WrongValue(
+                    "{component}: {table} have a '{name}' already; give this Field another name.",
+                    component=component.__name__,
+                    table=kind.table,
+                    name=name,
+                )
+            if field.references is not None or field.role is Role.DERIVED:
+                raise WrongValue(
+                    "{component}.{field}: a mod cannot add references or derived columns, only Fields with values of"
+                    " their own (document or state).",
+                    component=component.__name__,
+                    field=field.name,
+                )
+            field.check_default(component.__name__)
+        for field, name in zip(fields, names, strict=True):
+            field.name, field.component = name, f"{mod}.{component.__name__}"
+            field.key = field.key.removeprefix(f"{mod}_")
+            setattr(kind, name, field)
+            self._undo.append(partial(delattr, kind, name))
         self._keeps_data()
 
     def kind(self, kind: type[Handle]) -> None:
         """Add a kind of elements: a class with Fields, whose table every model has; see components.Handle.
 
         Files keep them under "components": {"<mod>.<Kind>": […]}. Those with `points` can be picked, dragged,
-        copied and selected in a box like others; a layer of the mod draws them.
+        copied and selected in a box like others; a layer of the mod draws them. Raises ValueError if a model has such
+        elements already, or a Field is none that a mod can add.
         """
-        self._guard.checkers(fields_of(kind))
-        self._put(EXTENSIONS.kinds, checked_kind(self.name, kind), kind)
+        fields = {field.name: field for field in fields_of(kind)}
+        self._guard.checkers(fields.values())
+        others = [*KINDS, *EXTENSIONS.kinds.values()]
+        for part in ("table", "noun"):
+            word = getattr(kind, part, "")
+            if not word or word in [getattr(other, part) for other in others]:
+                raise WrongValue(
+                    "{name}: its {part} '{word}' is missing or already used; give it another.",
+                    name=kind.__name__,
+                    part=part,
+                    word=word,
+                )
+        if not is_identifier(kind.table) or hasattr(Model, kind.table):
+            raise WrongValue(
+                "{name}: '{table}' cannot be the name of a table; use another word.",
+                name=kind.__name__,
+                table=kind.table,
+            )
+        if kind.single:
+            raise WrongValue(
+                "{name}: a mod's kind cannot be `single`. For facts about the whole model, add a component of"
+                " Settings or Environment.",
+                name=kind.__name__,
+            )
+        if "name" not in fields or fields["name"].dtype is not str:
+            raise WrongValue(
+                "{name} needs a Field 'name' of dtype str, by which people tell its elements apart.",
+                name=kind.__name__,
+            )
+        for field in fields.values():
+            if field.role is Role.DERIVED:
+                raise WrongValue(
+                    "{name}.{field}: a mod cannot add derived columns.", name=kind.__name__, field=field.name
+                )
+            field.check_default(kind.__name__)
+        for point in kind.points:
+            if point not in fields or fields[point].shape != (2,) or fields[point].role is not Role.DOCUMENT:
+                raise WrongValue(
+                    "{name}: its point '{point}' must be one of its Fields, of shape (2,) and with the role DOCUMENT.",
+                    name=kind.__name__,
+                    point=point,
+                )
+        self._put(EXTENSIONS.kinds, f"{self.name}.{kind.__name__}", kind)
         self._keeps_data()
 
     def upgrade(self, upgrade: Upgrade) -> None:
@@ -258,11 +329,15 @@ class App:
         folder = self._mod.folder / "locale" if self._mod.folder is not None else None
         if folder is None or not folder.is_dir():
             return
-        try:
-            add_catalogues(self.name, folder)
-        except ValueError as error:
-            raise ModError(str(error)) from None
+        for code in LANGUAGES:
+            try:
+                gettext.translation(self.name, folder, languages=[code], fallback=True)
+            except Exception as error:  # whatever damaged bytes lead to
+                place = folder / code / "LC_MESSAGES" / f"{self.name}.mo"
+                raise ModError("The catalogue {file} cannot be read; compile it again.", file=place) from error
+        EXTENSIONS.catalogues[self.name] = folder
         self._undo += [lambda: speak(language()), lambda: EXTENSIONS.catalogues.pop(self.name)]
+        speak(language())
 
     def _icon(self, name: str, icon: Sequence[Part]) -> None:
         if not icon:
@@ -275,7 +350,7 @@ class App:
 
     def _keeps_data(self) -> None:
         """Note the version, which files state that hold data of the mod."""
-        if self._mod.source != INCLUDED and self.name not in EXTENSIONS.versions:
+        if not self._mod.included and self.name not in EXTENSIONS.versions:
             self._put(EXTENSIONS.versions, self.name, self._mod.version)
 
     # --- all or nothing ------------------------------------------------------------------------------------

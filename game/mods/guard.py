@@ -21,15 +21,15 @@ from pinjoint.components.language import Said, tr
 from pinjoint.components.load import HistoryKind
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
-from pinjoint.components.obstacles import Pieces, Shape, check_pieces
+from pinjoint.components.obstacles import Pieces, Shape
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.table import Table
 from pinjoint.components.view import Plot, Readout, View
-from pinjoint.components.wording import printable
+from pinjoint.components.wording import printable, quoted
 from pinjoint.documents import models
 from pinjoint.mods.declared import check, check_fields, check_has_run, result_of
 from pinjoint.mods.limit import T, check_limit
-from pinjoint.mods.mod import INCLUDED, LONGEST, Mod, ModError
+from pinjoint.mods.mod import LONGEST, Mod, ModError
 from pinjoint.paths import PathError
 from pinjoint.systems.base import Commit, Event, Integrator, Law, StepSystem, System
 from pinjoint.systems.edit import Refusal
@@ -125,7 +125,7 @@ class Guard:
 
         def changed() -> bool:
             with model.transaction(system.name):
-                if self.mod.source == INCLUDED:
+                if self.mod.included:
                     change()
                 else:
                     interruptible(change, model)
@@ -188,9 +188,14 @@ class Guard:
 
         def pieces(table: Table[Any]) -> Pieces:
             made = shape(table)
-            if isinstance(made, Pieces):
-                check_fields(made, Pieces)
-            return check_pieces(table, made, source)
+            if not isinstance(made, Pieces):
+                message = tr(
+                    "{source} returned {value}; it must return Pieces.", source=source, value=quoted(made)
+                )
+                raise TypeError(message)
+            check_fields(made, Pieces)
+            made.check(table, source)
+            return made
 
         return self.mod.guarded(tr("the shape of {table}", table=kind.table), pieces, otherwise=nothing)
 
@@ -245,7 +250,7 @@ class Guard:
         called = tr("what the layer draws")
 
         def drawn(sheet: Sheet) -> list[Mark]:
-            if self.mod.source == INCLUDED:
+            if self.mod.included:
                 return list(draw(sheet))
             made = draw(replace(sheet, marks=list(sheet.marks), labels=[], legend=[], notes=[]))
             check(made, Iterable[Mark], called)

@@ -65,6 +65,11 @@ class Mod:
     withdraw: Callable[[], None] | None = None  # takes everything back that it registered
 
     @property
+    def included(self) -> bool:
+        """True if it comes with the program."""
+        return self.source == INCLUDED
+
+    @property
     def off(self) -> bool:
         """True if it was left out or switched off."""
         return bool(self.problem)
@@ -159,7 +164,7 @@ class Mod:
         if self.off:
             return otherwise
         try:
-            if self.source == INCLUDED:
+            if self.included:
                 return function(*arguments)
             return self.within(patience, called)
         except mistakes:

@@ -13,7 +13,6 @@ from pinjoint.components.field import Vector
 from pinjoint.components.language import ENGLISH, joined, language, spoken, tr
 from pinjoint.components.wording import is_broken
 from pinjoint.documents.format import ModelError
-from pinjoint.mods.mod import INCLUDED
 from pinjoint.scripts.lines import Failure, play_line
 from pinjoint.scripts.script import HEADER, Script, ScriptError
 from pinjoint.session import Session
@@ -58,11 +57,7 @@ def check_mods(script: Script) -> str:
 
 def _loaded_mods() -> dict[str, str]:
     """Versions of the mods that act now, those that come with the program apart, by name."""
-    return {
-        mod.name: mod.version
-        for mod in EXTENSIONS.mods
-        if mod.loaded and not mod.off and mod.source != INCLUDED
-    }
+    return {mod.name: mod.version for mod in EXTENSIONS.mods if mod.loaded and not mod.off and not mod.included}
 
 
 def play(script: Script, session: Session | None = None) -> list[Failure]:

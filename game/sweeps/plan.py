@@ -23,7 +23,6 @@ from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.documents.open_documents import file_of
 from pinjoint.mods import load
-from pinjoint.mods.mod import INCLUDED
 from pinjoint.paths import EVERY, PathError, apply_override, energy_named, locate
 from pinjoint.sweeps.variation import (
     FORMS,
@@ -163,7 +162,7 @@ def _present_mods() -> tuple[tuple[str, str, str], ...]:
     return tuple(
         (mod.name, mod.version, "" if mod.source.startswith("package ") else str(mod.folder))
         for mod in EXTENSIONS.mods
-        if mod.loaded and mod.source != INCLUDED
+        if mod.loaded and not mod.included
     )
 
 

@@ -38,16 +38,8 @@ class Grip:
         return place
 
 
-@dataclass(frozen=True)
-class End:
-    """An end of a rod, by its number, 0 or 1."""
-
-    rod: Rod
-    number: int
-
-
-def pick_end(model: Model, view: View, pixel: Vector) -> End | None:
-    """The end of the rod under a pixel, if it is near; None under the toolbar."""
+def pick_end(model: Model, view: View, pixel: Vector) -> tuple[Rod, int] | None:
+    """The rod under a pixel and that end of it, 0 or 1, which is near; None if none is, and under the toolbar."""
     rod = None if view.covers(pixel) else pick_rod(model, view, pixel)
     if rod is None:
         return None
@@ -55,13 +47,13 @@ def pick_end(model: Model, view: View, pixel: Vector) -> End | None:
     away = np.hypot(x, y)
     number = int(np.argmin(away))
     reach = min(END_REACH * view.pixel_ratio, END_SHARE * float(np.hypot(x[1] - x[0], y[1] - y[0])))
-    return End(rod, number) if away[number] <= reach else None
+    return (rod, number) if away[number] <= reach else None
 
 
-def ring_of(model: Model, view: View, end: End) -> Vector:
+def ring_of(model: Model, view: View, rod: Rod, end: int) -> Vector:
     """Where a hinge at an end of a rod is drawn (m)."""
-    rows = list(end.rod.between)
-    at, other = drawn_positions(model)[rows if end.number == 0 else rows[::-1]]
+    rows = list(rod.between)
+    at, other = drawn_positions(model)[rows if end == 0 else rows[::-1]]
     length = float(np.hypot(*(other - at)))
     share = min(RING * view.pixel_ratio / view.camera.scale / length, 0.25) if length > 0.0 else 0.0
     x, y = (at + share * (other - at)).tolist()

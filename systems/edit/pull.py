@@ -32,6 +32,27 @@ class Hand:
     damping: float
     anchor: Vector
 
+    @classmethod
+    def on(cls, model: Model, view: View, particle: Particle, pace: Callable[[], float]) -> Hand:
+        """A hand that holds a particle where it is; `pace()`: seconds simulated per second shown.
+
+        A particle without rods follows the pointer within FOLLOWS_WITHIN. One of a structure is pulled by no
+        more than the usual force of the model when the pointer is COMFORTABLE points away, so that a stiff
+        truss bends instead of being torn apart. The damper is critical for the particle by itself.
+        """
+        clock = model.clock
+        # its steps are chosen so: to them any stiffness is good
+        by_error = clock.step_limit > 0.0 or clock.step_error > 0.0
+        step = 0.0 if by_error else clock.step_size  # 0 where no run could begin, too
+        fastest = 1.0 / (STEPS_PER_RADIAN * step) if step > 0.0 else math.inf
+        if (model.rods.between == particle.row).any():
+            reach = COMFORTABLE * view.pixel_ratio / view.camera.scale / model.settings.displacement_scale
+            stiffness = min(particle.mass * fastest**2 / 1000.0, usual(model, "force") / reach)
+        else:
+            stiffness = particle.mass * min(2.0 * math.pi / (FOLLOWS_WITHIN * pace()), fastest) ** 2 / 1000.0
+        damping = 2.0 * math.sqrt(1000.0 * stiffness * particle.mass) / 1000.0
+        return cls(particle, stiffness, damping, particle.displacement)
+
     def at(self, anchor: Vector) -> Hand:
         """This hand with another anchor (m)."""
         return replace(self, anchor=anchor)
@@ -105,24 +126,3 @@ class Pull(Law):
         if self.hand is not None:
             forces[self.hand.particle.row] = self.force
         return forces
-
-
-def hand_on(model: Model, view: View, particle: Particle, pace: Callable[[], float]) -> Hand:
-    """A hand that holds a particle where it is; `pace()`: seconds simulated per second shown.
-
-    A particle without rods follows the pointer within FOLLOWS_WITHIN. One of a structure is pulled by no
-    more than the usual force of the model when the pointer is COMFORTABLE points away, so that a stiff
-    truss bends instead of being torn apart. The damper is critical for the particle by itself.
-    """
-    clock = model.clock
-    # its steps are chosen so: to them any stiffness is good
-    by_error = clock.step_limit > 0.0 or clock.step_error > 0.0
-    step = 0.0 if by_error else clock.step_size  # 0 where no run could begin, too
-    fastest = 1.0 / (STEPS_PER_RADIAN * step) if step > 0.0 else math.inf
-    if (model.rods.between == particle.row).any():
-        reach = COMFORTABLE * view.pixel_ratio / view.camera.scale / model.settings.displacement_scale
-        stiffness = min(particle.mass * fastest**2 / 1000.0, usual(model, "force") / reach)
-    else:
-        stiffness = particle.mass * min(2.0 * math.pi / (FOLLOWS_WITHIN * pace()), fastest) ** 2 / 1000.0
-    damping = 2.0 * math.sqrt(1000.0 * stiffness * particle.mass) / 1000.0
-    return Hand(particle, stiffness, damping, particle.displacement)

@@ -14,7 +14,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, spawn_rods
+from pinjoint.components.rod import Rod
 from pinjoint.components.section import USUAL_SECTION
 from pinjoint.components.table import flags
 from pinjoint.components.view import drawn_positions
@@ -64,9 +64,9 @@ def join(model: Model, first: Particle, second: Particle, *, rigid: bool = False
     check_ends(model, first, second)
     moved = first.displacement != second.displacement
     with model.transaction(tr("new {noun}", noun=tr(Rod.noun))):
-        [rod] = spawn_rods(
-            model,
-            [(first.row, second.row)],
+        [rod] = model.create(
+            Rod,
+            between=[(first.row, second.row)],
             prescribed_rest_length=[distance(first, second) if moved else None],
             **(_like_members(model) if rigid else {}),
         )

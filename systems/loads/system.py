@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.language import marked
-from pinjoint.components.load import CONSTANT, HISTORIES, HistoryKind, flattened
+from pinjoint.components.load import HistoryKind, flattened
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.systems.base import Law
@@ -55,8 +55,3 @@ class VaryingLoads(Law):
             f"{prefix}_values": np.array(values, dtype=np.float64),
             f"{prefix}_first": np.array(first, dtype=np.uint32),
         }
-
-
-def varying_loads() -> list[VaryingLoads]:
-    """One law for every registered history that changes in time."""
-    return [VaryingLoads(kind) for kind in HISTORIES.values() if kind.name != CONSTANT["kind"]]

@@ -242,13 +242,13 @@ class Program:
 
     # --- rotations ---------------------------------------------------------------------------------
 
+    @np.errstate(all="ignore")  # numbers beyond computing are reported before a run
     def _of_bending(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """Columns with the rotations as third coordinates, and what compares them with displacements."""
         arm, column = self._arm, self._column
         mass, lever = column("particles.mass"), levers(self.model)[self._held_rows]
         loads = (b.prefix for b in self._writer.of[StepRole.LOAD])
-        with np.errstate(over="ignore"):  # such numbers are reported before a run
-            turning = arm * arm * column("particles.turning")
+        turning = arm * arm * column("particles.turning")
         return {
             "per_arm": np.array([1.0 / arm]),
             "lever": np.column_stack([np.ones((len(lever), 2)), arm * lever]),

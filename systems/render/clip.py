@@ -1,4 +1,4 @@
-"""Clipping of segments to a rectangle, so that no mark lies far outside the window."""
+"""Clipping of segments and polygons to a rectangle, so that no mark lies far outside the window."""
 
 from __future__ import annotations
 
@@ -41,3 +41,19 @@ def _sides_beyond(points: Points, low: Points, high: Points) -> NDArray[np.uint8
         beyond |= (points[:, axis] > high[axis]).astype(np.uint8) << (2 * axis + 1)
         beyond |= (~np.isfinite(points[:, axis])).astype(np.uint8) << 4
     return beyond
+
+
+def clip_polygon(polygon: Points, low: Points, high: Points) -> Points:
+    """The part of a polygon (k, 2) inside a rectangle, cut side by side (Sutherland and Hodgman's method)."""
+    for axis in (0, 1):
+        for limit, sign in ((low[axis], 1.0), (high[axis], -1.0)):
+            depth = sign * (polygon[:, axis] - limit)  # positive inside
+            following, after = np.roll(polygon, -1, axis=0), np.roll(depth, -1)
+            crosses = (depth >= 0.0) != (after >= 0.0)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                crossing = polygon + (depth / (depth - after))[:, None] * (following - polygon)
+            both = np.stack([polygon, crossing], axis=1).reshape(-1, 2)
+            polygon = both[np.stack([depth >= 0.0, crosses], axis=1).ravel()]
+            if len(polygon) == 0:
+                return polygon
+    return polygon

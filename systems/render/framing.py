@@ -12,7 +12,7 @@ from pinjoint.components.camera import Viewport
 from pinjoint.components.language import listed, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import printable
-from pinjoint.systems.render.clip import clip_segments
+from pinjoint.systems.render.clip import clip_polygon, clip_segments
 from pinjoint.systems.render.marks import (
     Bars,
     Discs,
@@ -152,25 +152,9 @@ def _fills(corners: Points, colour: Colour, viewport: Viewport, of: Owners | Non
         yield Fills(corners[inside], colour, owners(of, inside))
     away = ((corners < low).all(axis=1) | (corners > high).all(axis=1)).any(axis=-1)
     for index in np.flatnonzero(~inside & ~away).tolist():
-        cut = _cut(corners[index], low, high)
+        cut = clip_polygon(corners[index], low, high)
         if len(cut) > 2:
             yield Fills(cut[None], colour, owners(of, slice(index, index + 1)))
-
-
-def _cut(polygon: Points, low: Points, high: Points) -> Points:
-    """A polygon (k, 2) cut to a rectangle, side by side (Sutherland and Hodgman's method)."""
-    for axis in (0, 1):
-        for limit, sign in ((low[axis], 1.0), (high[axis], -1.0)):
-            depth = sign * (polygon[:, axis] - limit)  # positive inside
-            following, after = np.roll(polygon, -1, axis=0), np.roll(depth, -1)
-            crosses = (depth >= 0.0) != (after >= 0.0)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                crossing = polygon + (depth / (depth - after))[:, None] * (following - polygon)
-            both = np.stack([polygon, crossing], axis=1).reshape(-1, 2)
-            polygon = both[np.stack([depth >= 0.0, crosses], axis=1).ravel()]
-            if len(polygon) == 0:
-                return polygon
-    return polygon
 
 
 def _within(places: Points) -> Points:

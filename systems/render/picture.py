@@ -182,11 +182,12 @@ def _composed(sheet: Sheet) -> Picture:
     scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
     put_sliders(paper, sheet.view, theme)
     _put_controls(paper, model, sheet.view, theme)
+    preview = draw_preview(sheet)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
     over = [
         *draw_scale(sheet, scale),
         *draw_flashes(sheet),
-        *draw_preview(sheet),
+        *preview,
         *overlays,
         *draw_pointed(sheet),
     ]

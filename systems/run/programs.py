@@ -166,9 +166,12 @@ class Programs:
     def blame_by_leaving_out(self, works: Callable[[], bool], problem: str) -> bool:
         """Leave out the mods of the plan one after the other, and switch off the one without which something works.
 
+        What comes with the program is not to blame where numbers of a model are beyond computing.
+
         problem: a sentence that says what does not. False if it does not even work without all of them.
         """
-        mods = dict.fromkeys(system.mod for system in (*self.plan, self.integrator) if system.mod is not None)
+        brought = dict.fromkeys(system.mod for system in (*self.plan, self.integrator))
+        mods = [mod for mod in brought if mod is not None and not mod.included]
         culprit = None
         try:
             with ExitStack() as aside:

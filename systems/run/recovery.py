@@ -107,7 +107,7 @@ class Recovery:
 
     def _acting_mods(self) -> str:
         """The sentence that names the laws of mods in the run that was given up, which may be the cause."""
-        laws = [law.name for law in self._programs.plan if law.kernel and law.mod is not None]
+        laws = [law.name for law in self._programs.plan if law.kernel and law.mod and not law.mod.included]
         if not laws:
             return ""
         return tr(

@@ -7,12 +7,13 @@ Hinged ends are columns of zeros. Lengths in m, forces in kN; arrays have one ro
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.derived import FULL_TURN, along_and_across
+from pinjoint.components.derived import along_and_across
 from pinjoint.components.model import Model
 
 Array = NDArray[np.float64]
@@ -191,7 +192,7 @@ def needed_parts(model: Model, axial_force: Array, slopes: Array | None = None) 
     pressed = np.where(bent, -axial_force * rods.rest_length**2, 0.0)
     ratio = np.divide(pressed, rods.bending_stiffness, out=np.zeros(rods.count), where=bent)
     by_force = np.sqrt(np.maximum(ratio, 0.0) / WITHIN)
-    by_slopes = 0.0 if slopes is None else 4.0 * np.abs(slopes).max(axis=1, initial=0.0) / FULL_TURN - 1e-9
+    by_slopes = 0.0 if slopes is None else 4.0 * np.abs(slopes).max(axis=1, initial=0.0) / math.tau - 1e-9
     parts: NDArray[np.intp] = np.ceil(np.maximum(by_force, by_slopes)).astype(np.intp)
     return np.maximum(parts, 1)
 

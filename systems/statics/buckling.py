@@ -27,9 +27,8 @@ from pinjoint.systems.statics.factor import (
     unresisted,
 )
 from pinjoint.systems.statics.state import Start
-from pinjoint.systems.statics.theory import linear
+from pinjoint.systems.statics.theory import FULL, linear
 
-FULL = 150  # unknowns up to which all eigenvalues are computed
 RESTARTS = 100
 LANCZOS = 40  # vectors that the lowest of larger structures are found from, at least
 MODES = 5

@@ -22,10 +22,11 @@ from pinjoint.systems.statics.relax import BALANCED, creep, has_run_away
 CONTACT_STRAIN = 1e-3  # of a contact under the largest load, before it is lengthened
 SHORTEST_MOVE = 0.25  # of its radius: the travel of a disc in a step, whatever is near
 LONGEST_MOVE = 0.45  # of its distance from the nearest other: the same elsewhere
-TOUCHING = 1e-12  # of the sum of radii: a gap, or an overlap, that is round-off
+TOUCHING = (
+    1e-12  # of the sum of radii, or of a side: a gap, an overlap or a distance from its end that is round-off
+)
 NEARLY_TOUCHING = 1e-9  # the same, where lengthening no longer lessens it
 MOST_PAIRS = 10**6  # between which distances are measured; above, nodes of structures move SHORTEST_MOVE
-AT_END = 1e-12  # of its length: distance from the end of a side that counts as 0
 STIFF = 1e-4  # overlap, of the sum of radii, below which contacts need not become stiffer
 STIFFER = 10.0
 NEAR_REST = 0.1  # of the largest force, unbalanced: from here on an equilibrium is sought
@@ -153,8 +154,8 @@ class Discs:
         place = self._place(displacement)
         along = ((place[pairs[:, 0]] + line - self.start[pairs[:, 1]]) * span).sum(axis=1)
         squared = (span * span).sum(axis=1)
-        beyond = along >= squared * (1.0 - AT_END)
-        flat = (along > AT_END * squared) & (squared > 0.0) & ~beyond
+        beyond = along >= squared * (1.0 - TOUCHING)
+        flat = (along > TOUCHING * squared) & (squared > 0.0) & ~beyond
         way = way + beyond[:, None] * span
         length = np.hypot(*line.T)
         turned = np.column_stack([-span[:, 1], span[:, 0]])

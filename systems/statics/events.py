@@ -8,12 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.language import marked
 from pinjoint.components.model import Model
 
 RESTS = 1e-9  # of the largest motion: a smaller one counts as none
-# How settling ends where there is no equilibrium.
-STATUSES = marked("mechanism"), marked("collapse"), marked("limit reached")
 
 
 @dataclass(frozen=True)

@@ -102,7 +102,7 @@ def _direction(motions: Array) -> str:
         return tr("along y")
     if x < 0.0:
         x, y = -x, -y
-    return tr("along ({x:.2f}, {y:.2f})", x=x, y=y)
+    return tr("along ({x}, {y})", x=written.number(x, 2), y=written.number(y, 2))
 
 
 def nothing_stops(model: Model, motion: Array) -> str:
@@ -116,7 +116,7 @@ def nothing_stops(model: Model, motion: Array) -> str:
     elif abs(y) < ONE_WAY:
         way = tr("to the right") if x > 0.0 else tr("to the left")
     else:
-        way = tr("along ({x:.2f}, {y:.2f})", x=x, y=y)
+        way = tr("along ({x}, {y})", x=written.number(x, 2), y=written.number(y, 2))
     return plural(
         "{names} moves {way} and nothing stops it. Put something in its way, or hold it with a support.",
         "{names} move {way} and nothing stops them. Put something in their way, or hold them with supports.",

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.bent import distributed_shares
 from pinjoint.components.language import plural, tr
 from pinjoint.components.load import static_factor
 from pinjoint.components.model import Model
@@ -33,11 +34,9 @@ class External:
     @classmethod
     def of(cls, model: Model) -> External:
         """The external forces on a model; a varying load counts with the factor of its history in statics."""
-        particles, rods, environment = model.particles, model.rods, model.environment
-        scaled, moment = particles.force + np.array(environment.force), particles.moment.copy()
-        if rods.distributed_force.any():
-            halves = 0.5 * rods.distributed_force * rods.rest_length[:, None]
-            np.add.at(scaled, rods.between.ravel(), np.repeat(halves, 2, axis=0))
+        particles, environment = model.particles, model.environment
+        scaled = particles.force + np.array(environment.force) + distributed_shares(model)
+        moment = particles.moment.copy()
         notes = []
         for load in model.loads:
             factor = static_factor(load.history)

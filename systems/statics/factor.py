@@ -25,9 +25,7 @@ NO_STIFFNESS = 1e-13  # of the rods' stiffness at the same particle: round-off
 SOFT = 1e-12  # of the same: a motion that is resisted less counts as not resisted
 SOFT_MODES = 8  # that are looked for at most
 HELD = 1e-9  # of the largest stiffness: a motion that is resisted less is not held
-HELD_BY_BENDING = 1e-12  # the same where members bend, which long ones do a million times more easily
 INVERSE_ITERATIONS = 30
-NEAREST_ITERATIONS = 12  # near a singular matrix each gains many digits
 
 
 @cache
@@ -134,7 +132,7 @@ def is_held(model: Model, *, at_first: bool = False) -> bool:
     response = structure.respond(place, rods.plastic_strain, 1.0)
     soft = rods.yielding | (rods.tension_only & (rods.axial_force <= 0.0))
     tangent = structure.tangent(response, soft & (not at_first), geometric=not at_first)
-    share = HELD if structure.bending is None else HELD_BY_BENDING
+    share = HELD if structure.bending is None else SOFT  # long members bend a million times more easily
     try:
         np.linalg.cholesky(tangent - share * np.eye(structure.size) * np.abs(tangent).max(initial=0.0))
     except np.linalg.LinAlgError:
@@ -142,15 +140,17 @@ def is_held(model: Model, *, at_first: bool = False) -> bool:
     return structure.size > 0
 
 
-def softest(structure: Structure, response: Response, soft: Flags | None = None) -> tuple[float, Array]:
+def softest(
+    structure: Structure, response: Response, soft: Flags | None = None, *, nearest: bool = False
+) -> tuple[float, Array]:
     """The least eigenvalue λ of K φ = λ W φ and its mode, φᵀWφ = 1, by shifted inverse iteration.
 
-    soft: the rods without stiffness; None: those that are soft now.
+    soft: the rods without stiffness; None: those that are soft now. nearest: of all eigenvalues that nearest to 0.
     """
     matrix, weight = structure.tangent(response, response.soft if soft is None else soft), structure.weight
     share = NO_STIFFNESS
     factor = regular(matrix, weight, share)
-    while not factor.definite:
+    while not (factor.definite or nearest):
         share *= 4.0
         factor = regular(matrix, weight, share)
     mode = pseudo_random(len(weight), 1)[:, 0]
@@ -162,15 +162,6 @@ def softest(structure: Structure, response: Response, soft: Flags | None = None)
         if abs(value - previous) <= 1e-6 * abs(value + share):
             break
     return value, mode
-
-
-def nearest_mode(matrix: Matrix, weight: Array) -> Array:
-    """The mode (N,) that K resists least, with or against it, relative to W, by inverse iteration."""
-    factor, mode = regular(matrix, weight), pseudo_random(len(weight), 1)[:, 0]
-    for _ in range(NEAREST_ITERATIONS):
-        mode = factor.solve(weight * mode)
-        mode = mode / np.sqrt(float(weight @ mode**2))
-    return mode
 
 
 def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most: int = SOFT_MODES) -> Array:

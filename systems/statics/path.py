@@ -22,7 +22,7 @@ from pinjoint.systems.statics.equations import AXES, Array, Structure, normalise
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.explain import describe_motion
 from pinjoint.systems.statics.external import External
-from pinjoint.systems.statics.factor import nearest_mode, regular
+from pinjoint.systems.statics.factor import regular, softest
 from pinjoint.systems.statics.follow import HALF, Path, Point, Step, Tangent
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import StaticState
@@ -30,10 +30,9 @@ from pinjoint.systems.statics.state import StaticState
 DETAIL = 0.02  # of a rod's length between points; smaller: a smoother curve
 FIRST = 1e-3  # of the same, for the first increment
 LANDED = 1e-13  # of the goal, or of the last increment: near enough
-LANDINGS = 60  # trials
 LIMIT_POINT, BIFURCATION = marked("limit point"), marked("bifurcation")
 SHARPNESS = 1e-10  # of an increment, to which a critical point is found in it
-MOST_TRIALS = 200
+MOST_TRIALS = 200  # to find a goal, or a critical point, within an increment
 ALONG = 0.5  # of the first increment on a branch: one that goes less far along its mode fell back
 SMALLEST_BRANCH = 1e-5  # of a rod's length: the least first increment on a branch
 
@@ -161,8 +160,8 @@ class _Critical:
     def motion(self) -> Array:
         """What nothing resists, (n, …), the largest 1."""
         structure = self.path.structure
-        matrix = structure.tangent(self.point.response, self.tangent.soft)
-        return upright(normalised(structure.spread(nearest_mode(matrix, structure.weight))))
+        _, mode = softest(structure, self.point.response, self.tangent.soft, nearest=True)
+        return upright(normalised(structure.spread(mode)))
 
     def event(self, model: Model, sign: float, number: int) -> Event:
         """It in words; sign: of the load factor along the path, number: that of the bifurcation."""
@@ -316,7 +315,7 @@ class _Search:
     def _landed(self, last: tuple[Point, Tangent], step: Step) -> Step:
         """The last increment shortened so that it ends at the goal, by the secant method with bisection."""
         low, high = (0.0, self.beyond(last[0])), (step.taken, self.beyond(step.point))
-        for trial in range(LANDINGS):
+        for trial in range(MOST_TRIALS):
             if abs(high[1]) <= LANDED * abs(self.goal.value) or high[0] - low[0] <= LANDED * step.taken:
                 break
             share = low[1] / (low[1] - high[1]) if trial % 3 < 2 else 0.5

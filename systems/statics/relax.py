@@ -14,10 +14,9 @@ import numpy as np
 
 from pinjoint.systems.statics.equations import Array, Structure, largest
 from pinjoint.systems.statics.factor import is_stable, regular, softest
-from pinjoint.systems.statics.follow import LARGEST_MOVE, SMALLEST_SHARE, Path, Point
+from pinjoint.systems.statics.follow import LARGEST_MOVE, NEWTON_ITERATIONS, SMALLEST_SHARE, Path, Point
 
 STEPS = 4000  # at most
-NEWTON_ITERATIONS = 20  # within a step
 STEP_CONVERGED = 1e-7  # of the force at its start
 LARGEST_PENALTY = 1e9
 NUDGE = 1e-3  # of a rod's length: how far to push off an unstable equilibrium

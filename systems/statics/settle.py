@@ -42,7 +42,6 @@ UNCHANGED = 1e-12  # of the load: a smaller change is round-off
 MOST_DISCS = 250  # without rods; more would take minutes
 IN_ONE_PLACE = 0.75  # of the sum of their radii: forces hardly part discs that overlap by more
 HELD = 1e-3  # of the forces that hold a state: a smaller difference from a scaled load counts as none
-UNSTRESSED = 1e-9  # of the largest force: smaller forces that hold the present state count as none
 
 
 @dataclass(frozen=True)
@@ -208,7 +207,7 @@ class _Settling:
         held = np.where(self.structure.unknown, self.structure.internal(self.point.response), 0.0)
         of = self.structure.largest
         greatest = max(of(self.external.at(1.0)), self.largest)
-        return held if of(held) > UNSTRESSED * greatest else self._nothing
+        return held if of(held) > BALANCED * greatest else self._nothing
 
     def _carried(self) -> Array:
         """What whole distributed forces would add, in free directions, to the particles' forces in the present state."""

@@ -19,7 +19,7 @@ from pinjoint.systems.statics.state import STABLE, Start, StaticState
 
 _REFINEMENTS = 4  # of a linear solution
 _REFINEMENTS_OF_BENDING = 40  # at most; few unless hundreds of rods divide a long member
-FULL = 600  # unknowns up to which all modes and singular values are computed
+FULL = 600  # unknowns up to which all modes, eigenvalues and singular values are computed
 MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 
 

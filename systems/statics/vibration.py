@@ -14,11 +14,11 @@ from pinjoint.systems.statics.equations import ROUND_OFF, Array, Response, Struc
 from pinjoint.systems.statics.explain import divide_named
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.factor import Factor, pseudo_random
+from pinjoint.systems.statics.settle import UNBALANCED
 from pinjoint.systems.statics.state import Start, StaticState
 from pinjoint.systems.statics.theory import FULL
 
 LOWEST = 10  # modes of larger structures, unless more are asked for
-BALANCED = 1e-6  # of the largest force: residual of an equilibrium; a run ends at 1e-8
 DIVIDED = 4  # rods for each half wave of a member, with whose masses the lowest frequencies are within 5 %
 SHIFT = 1e-9  # below zero, of the highest ω², so that mechanisms (ω = 0) can be found too
 
@@ -76,7 +76,7 @@ def rests_under_load(model: Model) -> bool:
     response = _present(structure, Start.present(model))
     external, pull = External.of(model).at(1.0), structure.largest_force(response)
     unbalanced = structure.gather(external - structure.internal(response))
-    return pull > 0.0 and structure.greatest(unbalanced) <= BALANCED * max(pull, structure.largest(external))
+    return pull > 0.0 and structure.greatest(unbalanced) <= UNBALANCED * max(pull, structure.largest(external))
 
 
 def _present(structure: Structure, state: StaticState | Start) -> Response:

@@ -13,7 +13,6 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.load import HISTORIES
 from pinjoint.components.model import KINDS
 from pinjoint.components.table import fields_of
-from pinjoint.mods.mod import INCLUDED
 from pinjoint.systems.program.binding import find
 
 PAGE = Path(__file__).parents[2] / "components" / "README.md"
@@ -69,7 +68,7 @@ def histories() -> str:
         'Such as `{"kind": "ramp", "duration": 0.5}`: the factor of a load in time.',
         "",
     ]
-    kinds = [kind for kind in HISTORIES.values() if kind.mod is None or kind.mod.source == INCLUDED]
+    kinds = [kind for kind in HISTORIES.values() if kind.mod is None or kind.mod.included]
     lines = [
         f"| `{kind.name}` | {', '.join(f'`{name}`' for name in kind.parameters)} | {meaning(kind.factor)} |"
         for kind in kinds

@@ -8,7 +8,7 @@ import numpy as np
 
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import spawn_rods
+from pinjoint.components.rod import Rod
 
 
 def truss(**rods: Any) -> Model:
@@ -22,7 +22,7 @@ def truss(**rods: Any) -> Model:
         fixed=[(False, True), (False, False), (True, True)],
         force=[(0.0, 0.0), (120.0, -160.0), (0.0, 0.0)],
     )
-    spawn_rods(model, [(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"], **rods)
+    model.create(Rod, 3, between=[(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"], **rods)
     return model
 
 
@@ -49,7 +49,8 @@ def islands(count: int, rods: int, **columns: Any) -> Model:
         fixed=np.tile(particles.fixed, (count, 1)),
         force=np.concatenate([particles.force * (k == 0) for k in several]),
     )
-    spawn_rods(model, np.concatenate([ends + k * particles.count for k in several]), **columns)
+    between = np.concatenate([ends + k * particles.count for k in several])
+    model.create(Rod, len(between), between=between, **columns)
     return model
 
 
@@ -100,7 +101,7 @@ def _held_at_the_left(
     force[right, 0] = 100.0
     model = Model()
     model.create(Particle, len(position), position=position, fixed=np.stack([left, left], axis=1), force=force)
-    spawn_rods(model, ends, **columns)
+    model.create(Rod, len(ends), between=ends, **columns)
     return model
 
 

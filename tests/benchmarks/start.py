@@ -192,11 +192,11 @@ def _main(model: str, edit: str) -> None:
 def _add_a_rod(session: Any) -> None:
     """From the apex of the triangle to a particle that is held above it."""
     from pinjoint.components.particle import Particle
-    from pinjoint.components.rod import spawn_rods
+    from pinjoint.components.rod import Rod
 
     with session.model.transaction("rod"):
         session.model.create(Particle, 1, position=[(1.0, 2.0)], fixed=[(True, True)])
-        spawn_rods(session.model, [(0, session.particles.count - 1)])
+        session.model.create(Rod, between=[(0, session.particles.count - 1)])
 
 
 def _pull(session: Any) -> None:

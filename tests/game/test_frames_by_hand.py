@@ -6,7 +6,7 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
-from pinjoint.components.free_body import apart, on_joint, on_rod
+from pinjoint.components.free_body import Apart, on_joint, on_rod
 from pinjoint.components.tags import DiagramShown
 from pinjoint.systems.forms.results import told
 from pinjoint.systems.render.picture import compose
@@ -65,7 +65,7 @@ def test_everything_apart_is_in_equilibrium(name: str) -> None:
     session = Session.open(FRAMES[name]())
     session.run(time=0.013)
     model = session.model
-    known = apart(model)
+    known = Apart.of(model)
     scale = abs(known.on_ends).max()
     for particle in model.particles:
         forces = on_joint(model, particle.row, known)
@@ -114,9 +114,9 @@ def test_what_is_left_over_turns_a_joint() -> None:
     session.settings.integrator, session.settings.time_step = "velocity_verlet", 1e-6
     session.run(time=0.002)
     joint, model = session.particles["B"], session.model
-    before, first = joint.angular_velocity, apart(model).left_over_moment[joint.row]
+    before, first = joint.angular_velocity, Apart.of(model).left_over_moment[joint.row]
     session.run(time=1e-5)
-    last = apart(model).left_over_moment[joint.row]
+    last = Apart.of(model).left_over_moment[joint.row]
     acceleration = (joint.angular_velocity - before) / 1e-5
     assert 1000.0 * 0.5 * (first + last) / joint.inertia == pytest.approx(acceleration, rel=1e-3)
 

@@ -21,9 +21,11 @@ from pinjoint.editor.scenes.files import FileScene
 from pinjoint.editor.scenes.load import Load
 from pinjoint.scripts.script import TO_DO, Script, lessons
 from pinjoint.systems.render.marks import Text
-from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.picture import compose, compose_all
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.typography import text_width
 from tests.reference.models import triangle
+from tests.systems.render.pictures import marks_of
 
 pytestmark = pytest.mark.usefixtures("data")
 
@@ -566,3 +568,19 @@ def test_what_is_asked_is_read_in_full_in_a_small_window(session: Session) -> No
     said = " ".join(mark.text for mark in compose(form, view, load_theme()).marks if isinstance(mark, Text))
     assert message_of(session) in said
     assert "Press Return again to replace it, or Esc to keep it." in said
+
+
+@pytest.mark.parametrize("width", [640, 1024, 1920])
+def test_lessons_stand_in_full_rows_with_their_titles_inside(session: Session, width: int) -> None:
+    session.resize(width, 1080)
+    session.press("d")
+    unfold(session)
+    picture = compose_all(session.stages, load_theme("light"))[0]
+    cards = [hit for hit in picture.hits if isinstance(hit.item, Tile) and isinstance(hit.item.source, Script)]
+    rows = [len(list(row)) for _, row in itertools.groupby(cards, lambda card: card.top)]
+    assert len(set(rows[1:-1])) == 1
+    titles = [
+        (mark, card) for mark in marks_of(picture, Text) for card in cards if card.contains((mark.x, mark.y))
+    ]
+    for mark, card in titles:
+        assert mark.x + text_width(mark.text, mark.size, mark.weight) <= card.left + card.width - 6.0

@@ -132,6 +132,9 @@ def test_after_an_edit_or_settling_nothing_is_said_of_the_run_before(session: Se
     session.run(until="rest")
     assert session.settle(1e6) == "collapse"
     assert "Plastic collapse" in session.message
+    collapsing = Session.open("isostatic_collapse")
+    assert collapsing.settle() == "collapse"
+    assert "moving B along (0.71, −0.71)" in collapsing.message
 
 
 def test_sessions_and_tables_tell_what_they_are(session: Session) -> None:

@@ -173,7 +173,8 @@ def _force_method(*keys: str) -> Scene:
 def _mechanism_refused(window: Window) -> Session:
     """An isostatic structure without one of its rods moves."""
     session = pressed(window, "k", "k")
-    session.click(0.5, 0.5)
+    model, _ = session.focus
+    session.click(*drawn_positions(model)[list(model.rods["AB"].between)].mean(axis=0).tolist())
     return session
 
 

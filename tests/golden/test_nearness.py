@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.bent import FLAT, QUANTITIES, distributed_shares
+from pinjoint.components.bent import FLAT, distributed_shares
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
+from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.written import DIGITS, given, number
 from pinjoint.documents import models
 from pinjoint.systems.render.labels.placing import LEADER_OPACITY
@@ -180,7 +181,7 @@ def test_values_of_frames_stand_nearest_to_what_they_are_of(name: str) -> None:
         session.resize(width, height, ratio)
         session.view.fit(session.model)
         session.update_view()
-        for session.view.quantity in QUANTITIES:
+        for session.view.quantity in DIAGRAMS:
             (model, view), *_ = session.stages
             assert isinstance(model, Model)
             found = list(misplaced(compose(model, view, LIGHT), model))

@@ -121,6 +121,16 @@ def texts(shown: list[Picture]) -> Iterator[tuple[Text, Box]]:
                 yield mark, box
 
 
+@pytest.mark.parametrize("name", ["drawing-a-force", "drawing-a-wall"])
+def test_what_a_tool_says_hides_no_name_in_part(name: str) -> None:
+    marks = [mark for shown in read(name, SIZES["small"]) for picture in shown for mark in picture.marks]
+    boxes = [text_box(mark, capital_height(mark.size)) for mark in marks if isinstance(mark, Text)]
+    said = next(n for n, mark in enumerate(marks) if isinstance(mark, Text) and re.match(r"\(|.*°$", mark.text))
+    bubble = marks[said - 1]
+    assert isinstance(bubble, Panel)
+    assert sum(overlap(box, box_of(bubble)) for box in boxes) == 1, "its own"
+
+
 def box_of(panel: Panel) -> Box:
     return panel.left, panel.top, panel.left + panel.width, panel.top + panel.height
 

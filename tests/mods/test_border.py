@@ -15,7 +15,7 @@ import pytest
 from pinjoint import Session, mods
 from pinjoint.commands.command_line import main
 from pinjoint.components.field import FieldError
-from pinjoint.interrupts import Interrupt, is_persons, mark_interrupts
+from pinjoint.interrupts import Interrupt, interrupt, is_persons, mark_interrupts
 from pinjoint.scripts.playing import play
 from pinjoint.scripts.script import Script
 from tests.conftest import ROOT
@@ -223,6 +223,24 @@ def test_ctrl_c_is_told_from_an_exception_of_a_mod() -> None:
         assert not is_persons(SystemExit())
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+def test_ctrl_c_is_not_lost_in_what_a_compiler_calls() -> None:
+    """As LLVM calls it, from where no exception goes on."""
+    ended: list[str] = []
+
+    def _raw_object_cache_notify() -> None:
+        signal.raise_signal(signal.SIGINT)
+        ended.append("the call")
+
+    before = signal.signal(signal.SIGINT, interrupt)
+    try:
+        with pytest.raises(Interrupt):  # noqa: PT012 (it comes at any time of the wait)
+            _raw_object_cache_notify()
+            time.sleep(20.0)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert ended == ["the call"]
 
 
 # --- what Fields and frames are given -----------------------------------------------------------------------------

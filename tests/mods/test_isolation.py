@@ -220,6 +220,20 @@ def bad(particles_position, particles_velocity, time):
     assert made.run(time=0.01 - made.time) == "time reached"  # without the mod
 
 
+def test_what_comes_with_the_program_is_not_to_blame_for_numbers_of_a_model() -> None:
+    """The steps would be others without the pulse, and lead on for once."""
+    pulse = {"kind": "pulse", "start": 1e-300, "duration": 0.01}
+    made = Session.open(
+        model(
+            [particle("A", 0, 0), particle("B", 1, 0.3, velocity=[0.36, 1e30]), particle("C", 2, 0, mass=2)],
+            [rod("A", "B", tension_only=True), rod("A", "C", rest_length=1e-30)],
+            loads=[{"on": "C", "force": [5.0, 5.0], "history": pulse}],
+        )
+    )
+    assert made.run(time=0.01) == "diverged"
+    assert not any(mod.off for mod in mods.MODS)
+
+
 def test_of_several_mods_that_act_the_one_that_spoils_the_run_is_found(write_mod: Write) -> None:
     spoilt = "@njit(error_model='numpy')\ndef bad(particles_position):\n    return particles_position[1] ** 0.5 - {}, 0.0"
     fair, bad = (LAW.format(kernel=spoilt.format(left), more="") for left in ("0.0", "(-1.0) ** 0.5"))

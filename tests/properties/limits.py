@@ -4,7 +4,7 @@ import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from pinjoint.interrupts import Interrupt
+from pinjoint.interrupts import interrupt
 
 AGAIN = 10.0  # s of processor time
 
@@ -26,15 +26,11 @@ def within(seconds: float, what: str = "this") -> Iterator[None]:
 
 @contextmanager
 def interrupted_after(seconds: float) -> Iterator[None]:
-    """Ctrl+C in whatever takes more processor time (s) than that, and again after AGAIN, since a compiler swallows some.
+    """Ctrl+C in whatever takes more processor time (s) than that, and again after AGAIN, since ends of objects swallow some.
 
     Not where the system has no such timers.
     """
-
-    def handle(*_: object) -> None:
-        raise Interrupt
-
-    with _after(seconds, handle, AGAIN):
+    with _after(seconds, interrupt, AGAIN):
         yield
 
 

@@ -24,8 +24,8 @@ def test_tags_of_a_model_agree_with_brute_force_through_deletion_and_undo() -> N
             elif log and chance.random() < 0.3:
                 model.apply(log.pop())  # type: ignore[arg-type]
             elif particle in marks[tag] and chance.random() < 0.5:
-                model.untag(particle, tag)
-                marks[tag].discard(particle)
+                marks[tag] = {other for other in marks[tag] - {particle} if other.exists}
+                model.tag_only(marks[tag], tag)
             elif particle.exists:
                 model.tag(particle, tag)
                 marks[tag].add(particle)

@@ -20,7 +20,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.load import CONSTANT, Load
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, spawn_rods
+from pinjoint.components.rod import Rod
 from pinjoint.components.table import fields_of
 
 KINDS: dict[str, type[Handle]] = {kind.table: kind for kind in (Particle, Rod, Load, Grid)}
@@ -233,8 +233,6 @@ class Editing(RuleBasedStateMachine):
                 other["shown"] = other is shown[-1]
 
         def act() -> list[Any]:
-            if table == "rods":
-                return spawn_rods(self.model, columns.pop("between"), **columns)
             return self.model.create(KINDS[table], len(rows), **columns)
 
         handles = self.agree(act, plain)

@@ -10,9 +10,8 @@ from pinjoint.components.bent import (
     AXIAL,
     FLAT,
     MOMENT,
-    QUANTITIES,
     SHEAR,
-    axes,
+    Axes,
     curved_lines,
     derivative,
     inner_forces,
@@ -21,6 +20,7 @@ from pinjoint.components.bent import (
     zeros,
 )
 from pinjoint.components.model import Model
+from pinjoint.components.settings import DIAGRAMS
 from pinjoint.documents.document import parse
 from tests.systems.render.frame_models import CLAMPED, EI, FRAMES, PINNED, ROLLER, frame, portal_at_rest
 
@@ -40,7 +40,7 @@ def beam(start: dict[str, Any], end: dict[str, Any], turns: tuple[float, float],
 
 
 def sag(model: Model, share: float) -> float:
-    return float(axes(model, ONE).points(np.array([share]))[0, 0, 1])
+    return float(Axes.of(model, ONE).points(np.array([share]))[0, 0, 1])
 
 
 def test_a_simple_beam_sags_by_the_closed_form() -> None:
@@ -59,7 +59,7 @@ def test_hinged_ends_sag_alike() -> None:
     turn = LOAD * SPAN**3 / (24.0 * EI)
     rigid, hinged = beam(PINNED, ROLLER, (turn, -turn)), beam(PINNED, ROLLER, (0.0, 0.0), hinged=[True, True])
     shares = np.linspace(0.0, 1.0, 9)
-    one, other = (axes(model, ONE).points(shares) for model in (rigid, hinged))
+    one, other = (Axes.of(model, ONE).points(shares) for model in (rigid, hinged))
     assert other == pytest.approx(one, rel=1e-12, abs=1e-15)
     assert hinged.rods.largest_moment[0] == pytest.approx([-LOAD * SPAN**2 / 8.0, 0.5 * SPAN])
 
@@ -75,7 +75,7 @@ def test_a_clamped_beam_sags_between_ends_that_do_not_turn() -> None:
 
 
 @pytest.mark.parametrize("name", FRAMES)
-@pytest.mark.parametrize("quantity", QUANTITIES)
+@pytest.mark.parametrize("quantity", DIAGRAMS)
 def test_forces_along_rods_begin_and_end_with_the_columns(name: str, quantity: str) -> None:
     session = Session.open(FRAMES[name]())
     session.run(time=0.01)
@@ -115,7 +115,7 @@ def test_pieces_are_flat_and_follow_the_axis() -> None:
     assert lines is not None
     assert 4 <= len(lines.rods) <= 32
     assert lines.end[:-1] == pytest.approx(lines.start[1:])
-    fine = axes(model, ONE).points(np.linspace(0.0, 1.0, 2001))[0]
+    fine = Axes.of(model, ONE).points(np.linspace(0.0, 1.0, 2001))[0]
     step = lines.end - lines.start
     away = fine[:, None] - lines.start
     share = np.clip((away * step).sum(axis=2) / (step**2).sum(axis=1), 0.0, 1.0)
@@ -131,7 +131,7 @@ def test_strongly_bent_rods_leave_joints_in_the_right_direction() -> None:
     session.model.writable("particles.displacement")[1] = chord * np.array(
         [np.cos(turn / 2) - 1.0, np.sin(turn / 2)]
     )
-    found = axes(session.model, ONE)
+    found = Axes.of(session.model, ONE)
     start, end = found.tangents(np.array([0.0, 1.0]))[0]
     assert np.arctan2(start[1], start[0]) == pytest.approx(0.0, abs=1e-9)
     assert np.arctan2(end[1], end[0]) == pytest.approx(turn, abs=1e-9)
@@ -153,17 +153,17 @@ def test_curves_scale_with_displacements() -> None:
     model, rows = session.model, np.arange(3)
     shares = np.linspace(0.0, 1.0, 5)
     model.settings.displacement_scale = 0.0
-    straight = axes(model, rows).points(shares)
+    straight = Axes.of(model, rows).points(shares)
     model.settings.displacement_scale = 1.0
-    true = axes(model, rows).points(shares)
+    true = Axes.of(model, rows).points(shares)
     model.settings.displacement_scale = 30.0
-    assert axes(model, rows).points(shares) == pytest.approx(straight + 30.0 * (true - straight), rel=1e-12)
+    assert Axes.of(model, rows).points(shares) == pytest.approx(straight + 30.0 * (true - straight), rel=1e-12)
 
 
 def test_rigid_joints_keep_their_angles() -> None:
     model = Session.open(portal_at_rest()).model
     model.settings.displacement_scale = 40.0
-    tangent = axes(model, np.array([0, 1])).tangents(np.array([0.0, 1.0]))
+    tangent = Axes.of(model, np.array([0, 1])).tangents(np.array([0.0, 1.0]))
     column, girder = tangent[0, 1], tangent[1, 0]
     cosine = column @ girder / np.hypot(*column) / np.hypot(*girder)
     assert abs(cosine) < 1e-2

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.free_body import apart, on_joint, on_rod
+from pinjoint.components.free_body import Apart, on_joint, on_rod
 
 MODELS = ["isostatic", "hyperstatic", "braced_portal", "warren_bridge", "tower", "pendulum", "hanging_net"]
 
@@ -18,7 +18,7 @@ def largest(session: Session) -> float:
     return max(
         np.abs(particles.applied_force).max(),
         np.abs(particles.reaction).max(),
-        np.abs(apart(session.model).pull).max(),
+        np.abs(Apart.of(session.model).pull).max(),
     )
 
 
@@ -38,7 +38,7 @@ def test_supports_balance_rods_and_dampers_while_a_structure_moves(name: str) ->
     session = Session.open(name)
     session.run(steps=40)
     held = session.model.particles.fixed
-    assert np.abs(apart(session.model).left_over[held]).max(initial=0.0) <= 1e-8 * largest(session)
+    assert np.abs(Apart.of(session.model).left_over[held]).max(initial=0.0) <= 1e-8 * largest(session)
 
 
 def test_what_is_left_over_accelerates() -> None:
@@ -47,9 +47,9 @@ def test_what_is_left_over_accelerates() -> None:
     session.settings.time_step = 1e-7
     session.run(time=2e-5)
     joint = session.particles["B"]
-    before, first = np.array(joint.velocity), apart(session.model).left_over[joint.row]
+    before, first = np.array(joint.velocity), Apart.of(session.model).left_over[joint.row]
     session.run(steps=1)
-    last = apart(session.model).left_over[joint.row]
+    last = Apart.of(session.model).left_over[joint.row]
     change = joint.mass * (np.array(joint.velocity) - before) / 1e-7 / 1000.0  # kN
     assert 0.5 * (first + last) == pytest.approx(change, rel=1e-6)
     [force] = [force for force in on_joint(session.model, joint.row) if force.kind == "inertia"]

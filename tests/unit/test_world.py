@@ -16,7 +16,7 @@ from pinjoint.components.grid import Grid
 from pinjoint.components.load import Load
 from pinjoint.components.model import KINDS, Model
 from pinjoint.components.particle import DEFAULT_MASS, Particle
-from pinjoint.components.rod import Rod, spawn_rods
+from pinjoint.components.rod import Rod
 from pinjoint.components.settings import Environment
 from pinjoint.components.tags import DiagramShown, Selected
 from pinjoint.components.world import Derivation, World
@@ -27,7 +27,7 @@ def triangle() -> Model:
     """A(0,0), B(1,1), C(2,0) m with rods AB, BC, CA."""
     model = Model()
     model.create(Particle, 3, name=["A", "B", "C"], position=[(0, 0), (1, 1), (2, 0)])
-    spawn_rods(model, [(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"])
+    model.create(Rod, 3, between=[(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"])
     return model
 
 
@@ -209,10 +209,9 @@ def test_creation_takes_columns_overrides_and_defaults() -> None:
     assert (a.name, b.name) == ("particle 1", "particle 2")
     assert (a.mass, b.mass, b.prescribed_mass) == (DEFAULT_MASS, 4.0, 4.0)
     assert a.fixed == b.fixed == (True, False)
-    [rod] = spawn_rods(model, [(0, 1)], rest_length=0.5, name="AB")
+    [rod] = model.create(Rod, between=[(0, 1)], rest_length=0.5, name="AB")
     assert (rod.rest_length, rod.original_length, rod.name) == (0.5, 1.0, "AB")
     assert model.create(Particle, 0) == []
-    assert spawn_rods(model, []) == []
 
 
 def chessboard(side: int) -> tuple[Model, NDArray[np.intp]]:
@@ -223,7 +222,7 @@ def chessboard(side: int) -> tuple[Model, NDArray[np.intp]]:
     x, y = np.meshgrid(np.arange(side), np.arange(side))
     model = Model()
     model.create(Particle, side * side, position=np.stack([x, y], axis=-1).reshape(-1, 2))
-    spawn_rods(model, between)
+    model.create(Rod, len(between), between=between)
     return model, between
 
 
@@ -252,9 +251,9 @@ def test_one_at_a_time_takes_no_longer_in_a_large_model() -> None:
         model = Model()
         model.create(Particle, particles, position=np.arange(2 * particles).reshape(-1, 2))
         rows = np.arange(particles - 1)
-        spawn_rods(model, np.stack([rows, rows + 1], axis=1))
-        spawn_rods(model, [(10, 12)])  # the first looks for the lowest free name, once
-        return lines_run(lambda: [spawn_rods(model, [(row, row + 2)]) for row in range(10)])
+        model.create(Rod, len(rows), between=np.stack([rows, rows + 1], axis=1))
+        model.create(Rod, between=[(10, 12)])  # the first looks for the lowest free name, once
+        return lines_run(lambda: [model.create(Rod, between=[(row, row + 2)]) for row in range(10)])
 
     assert lines(2000) <= 1.1 * lines(20)  # a search through all names would run a line for each
 
@@ -360,7 +359,7 @@ def counted() -> tuple[World, dict[str, int]]:
 
     world = World(KINDS, [counting(derivation) for derivation in DERIVATIONS])
     world.create(Particle, 3, position=[(0, 0), (1, 1), (2, 0)])
-    spawn_rods(world, [(0, 1), (1, 2)])
+    world.create(Rod, 2, between=[(0, 1), (1, 2)])
     calls.clear()
     return world, calls
 
@@ -410,7 +409,7 @@ def test_new_rows_are_derived_even_if_no_source_changed() -> None:
 
     world.derive(Derivation(("rods.strain",), ("settings.restitution",), compute))
     assert world.column("rods.strain").tolist() == [1.0, 1.0]
-    spawn_rods(world, [(0, 2)])
+    world.create(Rod, between=[(0, 2)])
     assert world.column("rods.strain").tolist() == [1.0, 1.0, 1.0]
 
 
@@ -464,10 +463,9 @@ def test_the_revision_of_tags_tells_when_marks_changed() -> None:
     model.tag(a, Selected)
     revision = model.tags_revision
     model.tag(a, Selected)
-    model.untag(model.particles["B"], Selected)
-    model.untag(a, DiagramShown)
+    model.tag_only([], DiagramShown)
     assert model.tags_revision == revision
-    model.untag(a, Selected)
+    model.tag_only([], Selected)
     assert model.tags_revision > revision
     assert model.tagged(Selected) == []
 

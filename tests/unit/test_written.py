@@ -88,6 +88,7 @@ def test_a_number_that_is_read_back_is_near(value: float, digits: int) -> None:
         (0.5, "0.5000 s"),
         (12.3456, "12.35 s"),
         (3.5e-8, "35.00 ns"),
+        (1e-300, "1.000·10⁻³⁰⁰ s"),
         (12345.6, "12346 s"),
         (0.0009999999, "1.000 ms"),
     ],

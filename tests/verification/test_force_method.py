@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pinjoint import Session
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import spawn_rods
+from pinjoint.components.rod import Rod
 from pinjoint.documents import models
 from pinjoint.force_method.copies import exact_forces
 from pinjoint.systems.statics.force_method import solve
@@ -81,7 +81,7 @@ def _complete_graph(random: np.random.Generator, count: int) -> Model:
     model = Model()
     model.create(Particle, count, position=position, fixed=fixed, force=random.normal(size=(count, 2)) * 50.0)
     pairs = [(a, b) for a in range(count) for b in range(a + 1, count)]
-    spawn_rods(model, pairs, stiffness=random.uniform(5e4, 3e5, len(pairs)))
+    model.create(Rod, len(pairs), between=pairs, stiffness=random.uniform(5e4, 3e5, len(pairs)))
     return model
 
 

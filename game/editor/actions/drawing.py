@@ -14,7 +14,7 @@ from pinjoint.editor.actions.editing import all_of
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import DrawForce, DrawMoment, DrawRod, DrawVelocity, tool_in_hand
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.edit.picking import End, pick_end, pick_particle, pick_rod
+from pinjoint.systems.edit.picking import pick_end, pick_particle, pick_rod
 from pinjoint.systems.edit.placing import place, snapped
 from pinjoint.systems.edit.rods import is_rigid, set_rigid, share_at, toggle_hinge, toggle_joint
 from pinjoint.systems.edit.supports import next_support
@@ -104,8 +104,9 @@ def _hinge(context: Context, pixel: Vector) -> None:
             "{element}: {value}", element=context.name(particle), value=tr(toggle_joint(model, particle))
         )
     elif (end := _end_at(context, pixel)) is not None:
-        made = toggle_hinge(model, end.rod, end.number)
-        context.notice = tr("{element}: {value}", element=context.name(end.rod), value=tr(made))
+        context.notice = tr(
+            "{element}: {value}", element=context.name(end[0]), value=tr(toggle_hinge(model, *end))
+        )
     elif view.tool == "hinge" and not view.covers(pixel):
         raise Refusal(
             "Click near the end of a rod, where a ring appears, or on a joint. Esc puts the tool away."
@@ -114,14 +115,14 @@ def _hinge(context: Context, pixel: Vector) -> None:
         context.take_up("hinge")
 
 
-def _end_at(context: Context, pixel: Vector) -> End | None:
+def _end_at(context: Context, pixel: Vector) -> tuple[Rod, int] | None:
     """The end of a rod near a pixel; in a menu of one rod, the nearer one."""
     found = pick_end(context.model, context.view, pixel)
     rods = context.selected_of(Rod)
     if found is None and context.view.tool != "hinge" and len(rods) == 1:
         rod = pick_rod(context.model, context.view, pixel)
         share = share_at(rods[0], context.view.camera.to_model(pixel))
-        return End(rods[0], int(share > 0.5)) if rod is rods[0] else None
+        return (rods[0], int(share > 0.5)) if rod is rods[0] else None
     return found
 
 

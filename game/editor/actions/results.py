@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from operator import attrgetter
 
-from pinjoint.components.bent import AXIAL, QUANTITIES, is_frame
+from pinjoint.components.bent import AXIAL, is_frame
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, marked, tr
@@ -13,6 +13,7 @@ from pinjoint.components.load import Load
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, has_strength
+from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.tags import DiagramShown
 from pinjoint.documents.shapes import NoShape
 from pinjoint.editor.actions.view import toggle
@@ -71,12 +72,12 @@ def _toggle_diagrams(context: Context, pixel: Vector) -> None:
 
 def _following(context: Context, shown: bool) -> bool:
     """Whether diagrams are shown after this, of the next quantity where rods bend."""
-    view, last = context.view, QUANTITIES[-1]
+    view, last = context.view, DIAGRAMS[-1]
     if not is_frame(context.model):
         return not shown
     if shown and view.quantity == last:
         return False
-    view.quantity = QUANTITIES[QUANTITIES.index(view.quantity) + 1] if shown else AXIAL
+    view.quantity = DIAGRAMS[DIAGRAMS.index(view.quantity) + 1] if shown else AXIAL
     context.notice = tr("{quantity}. Press I for the next.", quantity=begun(tr(NAMES[view.quantity])))
     return True
 

@@ -17,7 +17,7 @@ from pinjoint.editor.context import Context, Gesture
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import Grip, inside
 from pinjoint.systems.edit.placing import Movable, check_free, snapped, snapped_to_points
-from pinjoint.systems.edit.pull import hand_on
+from pinjoint.systems.edit.pull import Hand
 from pinjoint.systems.physics.pace import natural_pace
 
 
@@ -116,7 +116,7 @@ class PullParticle(Gesture):
         context.simulation.advance(0)
         context.document.assessment.disturb("pulled")
         context.document.timeline.hold(
-            hand_on(context.model, context.view, particle, lambda: natural_pace(context.model))
+            Hand.on(context.model, context.view, particle, lambda: natural_pace(context.model))
         )
 
     def move(self, context: Context, pixel: Vector) -> None:

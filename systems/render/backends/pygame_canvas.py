@@ -24,6 +24,7 @@ from pinjoint.systems.render.backends.raster import (
     load_raster,
     stroke_coverage,
 )
+from pinjoint.systems.render.clip import clip_polygon
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Panel, Picture, Stamps, Strokes, Text
 from pinjoint.systems.render.symbols import RIM, turned_parts
 from pinjoint.systems.render.theme import Colour
@@ -33,6 +34,7 @@ _WHITE, _BLACK = (255, 255, 255, 255), (0, 0, 0, 255)
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
+_FILLED = 3e4  # pixels, how far away what is filled may reach
 _LONGEST = 4000  # characters that are drawn of a text: more than any window is wide
 _MANY = 300  # bars, discs; and 50 pixels of strokes for each: from there on the compiled kernels pay
 
@@ -166,9 +168,12 @@ def _written(font: pygame.font.Font, mark: Text) -> pygame.Surface:
 
 
 def _fill(surface: pygame.Surface, corners: NDArray[np.float64], colour: Colour) -> None:
-    """Fill polygons with corners (n, k, 2), rounded to whole pixels."""
-    for polygon in np.round(corners).astype(np.int64).tolist():
-        pygame.gfxdraw.filled_polygon(surface, polygon, colour)
+    """Fill polygons with corners (n, k, 2), rounded to whole pixels; those that 16 bits cannot tell are cut."""
+    far = (np.abs(corners) > _FILLED).any(axis=(1, 2))
+    cut = [clip_polygon(polygon, np.full(2, -_FILLED), np.full(2, _FILLED)) for polygon in corners[far]]
+    for polygons in (corners[~far], *(polygon[None] for polygon in cut if len(polygon) > 2)):
+        for polygon in np.round(polygons).astype(np.int64).tolist():
+            pygame.gfxdraw.filled_polygon(surface, polygon, colour)
 
 
 def _pixels(surface: pygame.Surface) -> Pixels:

@@ -12,17 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from pinjoint.components.bent import (
-    AXIAL,
-    MOMENT,
-    SHEAR,
-    Axes,
-    axes,
-    derivative,
-    inner_forces,
-    values,
-    zeros,
-)
+from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, Axes, derivative, inner_forces, values, zeros
 from pinjoint.components.language import marked, tr
 from pinjoint.components.load import CONSTANT
 from pinjoint.components.model import Model
@@ -246,6 +236,7 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) 
     side = np.full(len(every), -1.0 if quantity == MOMENT else 1.0)
     fitting = max(largest, room * _crowding(sheet, every, side, taken))
     scale = room * model.settings.diagram_scale / steady(sheet, (f"diagrams.{quantity}", 0), fitting)
+    scale = min(scale, _FAR / largest)
     base, polynomials, side = _baseline(sheet, rows), every[rows], side[rows]
     most = np.clip(_PIECES // len(rows), 4, 24)  # more where rods are few and long
     shares = np.linspace(0.0, 1.0, int(np.clip(sheet.rod_length / (_PIECE * sheet.unit), 2, most)) + 1)
@@ -277,7 +268,7 @@ def _baseline(sheet: Sheet, rows: Rows) -> Axes:
         ends = model.particles.position[sheet.ends[rows]]
         found = Axes(ends[:, 0], ends[:, 1], np.zeros((len(rows), 2)), np.zeros((len(rows), 5)))
     else:
-        found = axes(model, rows)
+        found = Axes.of(model, rows)
     left = found.left * [
         camera.scale,
         -camera.scale,

@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 
 from pinjoint.components import written
-from pinjoint.components.bent import axes
-from pinjoint.components.free_body import Apart, Force, apart, on_joint
+from pinjoint.components.bent import Axes
+from pinjoint.components.free_body import Apart, Force, on_joint
 from pinjoint.components.language import tr
 from pinjoint.systems.broad_phase import distance_to_segments
 from pinjoint.systems.render.labels.occupancy import STRONG
@@ -35,7 +35,7 @@ _SMALLEST_SHARE = 1e-3  # of the largest force: a smaller one of inertia is told
 
 def draw_free_bodies(sheet: Sheet) -> None:
     """Rods with gaps at their joints; in each the two opposite forces; and what else acts on every joint."""
-    known = apart(sheet.model)
+    known = Apart.of(sheet.model)
     force = known.pull
     long = np.hypot(*(sheet.end - sheet.start).T) >= SHORTEST * sheet.unit
     if len(sheet.rods) > MOST or not long.any():
@@ -100,7 +100,7 @@ def _draw_bodies(sheet: Sheet, start: Points, end: Points, gap: Values) -> None:
     if sheet.curved is not None:
         bent[sheet.curved.rods] = True
         shares = gap[bent, None] + np.linspace(0.0, 1.0, _PIECES + 1) * (1.0 - 2.0 * gap[bent, None])
-        points = sheet.view.camera.to_pixels(axes(sheet.model, rods[bent]).points(shares).reshape(-1, 2))
+        points = sheet.view.camera.to_pixels(Axes.of(sheet.model, rods[bent]).points(shares).reshape(-1, 2))
         points = points.reshape(-1, _PIECES + 1, 2)
         overlap = 0.1 * (points[:, 1:] - points[:, :-1])  # so that pieces close
         start = np.concatenate([start[~bent], (points[:, :-1] - overlap).reshape(-1, 2)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pinjoint.components import written
-from pinjoint.components.bent import axes
+from pinjoint.components.bent import Axes
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import DiagramShown
 from pinjoint.systems.render.labels.occupancy import STRONG
@@ -43,7 +43,7 @@ def draw_hinges(sheet: Sheet) -> None:
     if not len(which):
         return
     rows = sheet.rods[which]
-    tangent = axes(model, rows).tangents(np.array([0.0, 1.0])) * np.array([1.0, -1.0])  # y down
+    tangent = Axes.of(model, rows).tangents(np.array([0.0, 1.0])) * np.array([1.0, -1.0])  # y down
     out = tangent[np.arange(len(rows)), end] * np.where(end == 0, 1.0, -1.0)[:, None]
     out /= np.maximum(np.hypot(*out.T), 1e-300)[:, None]
     joint = sheet.ends[rows, end]
@@ -122,7 +122,7 @@ def _tips(sheet: Sheet, index: int, along: Points) -> tuple[Points, bool]:
     count = int(np.clip(round(seen * length / (_APART * u)), 2, _MOST_ARROWS))
     shares = np.linspace(0.0, 1.0, count + 1) if not shifted else (np.arange(count) + 1.0) / count
     shares = apart + shares * seen
-    points = sheet.view.camera.to_pixels(axes(sheet.model, np.array([row])).points(shares)[0])
+    points = sheet.view.camera.to_pixels(Axes.of(sheet.model, np.array([row])).points(shares)[0])
     across = np.array([way[1], -way[0]]) / length
     if shifted:
         return points + _BESIDE * u * across * (1.0 if across[1] <= 0.0 else -1.0), True

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from pinjoint.components.bent import FLAT, moved_axes, pieces
+from pinjoint.components.bent import FLAT, Axes
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.round_numbers import round_up
 from pinjoint.components.tags import Hovered, Selected
@@ -236,8 +236,8 @@ def _lines_of_shape(
     places, ends, to_pixels = sheet.view.camera.to_pixels(moved), sheet.ends[rows], sheet.view.camera.to_pixels
     start, end = places[ends[:, 0]], places[ends[:, 1]]
     if shape.rotation is not None:
-        bent = moved_axes(sheet.model, rows, moved, swing * shape.displacement, swing * shape.rotation)
-        if (lines := pieces(bent, rows, FLAT / sheet.view.camera.scale)) is not None:
+        bent = Axes.moved(sheet.model, rows, moved, swing * shape.displacement, swing * shape.rotation)
+        if (lines := bent.pieces(rows, FLAT / sheet.view.camera.scale)) is not None:
             straight = ~sheet.chosen(lines.rods, rows)
             start = np.concatenate([start[straight], to_pixels(lines.start)])
             end = np.concatenate([end[straight], to_pixels(lines.end)])

@@ -135,12 +135,13 @@ def _lines(sheet: Sheet, points: Points, colour: Colour, width: float = _WIDTH) 
 
 
 def _label(sheet: Sheet, preview: Preview, at: Points) -> list[Mark]:
-    """The value beside the end, inside the viewport."""
+    """The value beside the end, inside the viewport, where no other label stands."""
     u, v, theme = sheet.unit, sheet.viewport, sheet.theme
     text, size = preview.label.replace("-", "−"), sheet.font(13.0)
     width, height = text_width(text, size, "semibold") + 14.0 * u, line_height(size) + 6.0 * u
     left = float(np.clip(at[0] + 14.0 * u, v.left, max(v.right - width, v.left)))
     top = float(np.clip(at[1] - 14.0 * u - height, v.top, max(v.bottom - height, v.top)))
+    sheet.occupancy.block(left, top, width, height)
     return [
         Panel(left, top, width, height, 5.0 * u, faded(theme.panel, 0.94), theme.line),
         Text(text, left + 7.0 * u, top + height / 2, size, theme.text, "semibold"),

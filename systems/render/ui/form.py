@@ -215,7 +215,7 @@ class FormLayout:
         """A tile without a picture: its symbol, and beside it its title and its caption."""
         theme = self.theme
         sign = Drawn(partial(_symbol, tile, theme), 42.0)
-        row = Row((sign, self._legend(tile, width - 46.0 * self.u)), high=_PILL)
+        row = Row((sign, self._legend(tile, width - 50.0 * self.u), Gap(8.0)), high=_PILL)
         return Plate(self._card(row, tile, 8.0), item=tile)
 
     def _tile(self, tile: Tile, width: float, picture: float) -> Plate:
@@ -303,10 +303,8 @@ def _tile_lines(form: Form, width: float) -> Iterator[_Line]:
         if rest and len(those) > columns:
             those = [*those[: max(columns - 1, 1)], *rest[: columns - 1]]  # of one column the first tile only
         rows = in_rows(those, columns)
-        if pills:  # rows about equally long, the longer ones first, none wider than two
-            least, longer = divmod(len(those), len(rows))
-            whole = longer * (least + 1)
-            rows = [*in_rows(those[:whole], least + 1), *in_rows(those[whole:], least)]
+        if pills:  # rows equally long but for the last, none wider than two
+            rows = in_rows(those, math.ceil(len(those) / len(rows)))
             columns = max(len(rows[0]), math.ceil(width / (2 * _PILL_WIDTH + _GAP)))
         for number, row in enumerate(rows):
             yield _Line("" if number else section, row, columns)

@@ -7,9 +7,8 @@ from functools import partial
 import numpy as np
 
 from pinjoint.components.camera import Rectangle
-from pinjoint.components.card import Card
 from pinjoint.components.toolbar import Tool
-from pinjoint.components.view import View
+from pinjoint.components.view import Card, View
 from pinjoint.systems.render.marks import Mark, Panel, Picture, Stamps, Strokes
 from pinjoint.systems.render.marks import Text as Written
 from pinjoint.systems.render.theme import Theme, faded

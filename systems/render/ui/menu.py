@@ -6,6 +6,7 @@ import numpy as np
 
 from pinjoint.components.camera import Rectangle
 from pinjoint.components.field import Vector
+from pinjoint.components.language import tr
 from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import Hit, View
 from pinjoint.systems.render.marks import Mark, Panel, Strokes
@@ -31,7 +32,8 @@ _EDGE = 4.0  # points above, below, and to the edges of the window
 def put_menu(paper: Paper, view: View, theme: Theme) -> None:
     """The menu that is open in a view; a press beside it closes it.
 
-    Where not all columns have room, those are shown that end with the one that keys or the wheel have come to.
+    Where not all columns have room, those are shown that end with the one that keys or the wheel have come to, and it says
+    so below them.
     """
     menu, window, u = view.menu, view.camera.viewport, view.pixel_ratio
     if menu is None:
@@ -44,10 +46,12 @@ def put_menu(paper: Paper, view: View, theme: Theme) -> None:
     last = next((n for n, column in enumerate(parts) if menu.chosen in numbers_in(column)), 0)
     first = max(min(last, len(parts) - 1) - most + 1, 0)
     columns = Row([Column(column, grow=1.0) for column in parts[first : first + most]])
-    title = [Text(menu.title, points, theme.muted, "semibold")] if menu.title else []
-    head = Row(title, around=(10.0, 0.0, 0.0), high=row if title else 0.0)
+    head, foot = (
+        [Row((Text(text, points, theme.muted, weight),), around=(10.0, 0.0, 0.0), high=row)] * bool(text)
+        for text, weight in ((menu.title, "semibold"), ("" if fits else tr("Wheel shows more"), "regular"))
+    )
     whole = Plate(
-        Column((head, columns), around=(0.0, _EDGE, _EDGE)),
+        Column((*head, columns, *foot), around=(0.0, _EDGE, _EDGE)),
         theme.background,
         theme.line,
         radius=6.0,
@@ -57,9 +61,9 @@ def put_menu(paper: Paper, view: View, theme: Theme) -> None:
     edge, (x, y) = _EDGE * u, menu.at
     wide = min(whole.width(u), window.width - 2 * edge)
     high = whole.height(u, wide)
-    beside = x + max(round(u), 1)
-    left = beside if beside + wide <= window.right - edge else x - wide
-    top = y if y + high <= window.bottom - edge else y - high
+    beside = x + max(round(u), 1)  # to the left or above only where all of it has room there
+    left = beside if beside + wide <= window.right - edge or x - wide < window.left + edge else x - wide
+    top = y if y + high <= window.bottom - edge or y - high < window.top + edge else y - high
     left = min(max(left, window.left + edge), max(window.right - edge - wide, window.left))
     top = min(max(top, window.top + edge), max(window.bottom - edge - high, window.top))
     placed = Paper(u)
@@ -110,7 +114,8 @@ def _columns(view: View, theme: Theme) -> tuple[list[list[Part]], tuple[float, f
     menu, u, window = view.menu, view.pixel_ratio, view.camera.viewport
     between = Row((Gap(10.0), rule(theme.line, 7.0), Gap(10.0)))
     for points, row in _SIZES:
-        number, room = iter(range(len(menu.entries))), window.height - (4 * _EDGE + row * bool(menu.title)) * u
+        number = iter(range(len(menu.entries)))
+        room = window.height - (4 * _EDGE + row * (bool(menu.title) + 1)) * u  # below: that there is more
         groups = [
             [_entry(tool, next(number), menu.at, theme, points, row) for tool in group] for group in menu.groups
         ]

@@ -1,5 +1,7 @@
 """`pinjoint render`: pictures for reports."""
 
+import json
+import warnings
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -11,6 +13,7 @@ from pinjoint.app import App
 from pinjoint.commands.command_line import main
 from pinjoint.documents import models
 from pinjoint.systems.render.theme import load_theme
+from tests.reference.models import model, particle, rod
 
 SVG = "{http://www.w3.org/2000/svg}"
 RUN = ["isostatic", "--until-rest", "--diagrams"]
@@ -83,6 +86,21 @@ def test_what_does_not_go_together_is_refused(
     assert main(["render", "isostatic", "--output", str(tmp_path / words[0]), *words[1:]]) == 2
     assert told in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("words", [["--at", "0.01"], ["--mode", "1"], ["--mechanism", "1"]])
+def test_why_numbers_of_a_model_lead_nowhere_is_told(
+    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A mass of 3e30 kg, which follows from a density."""
+    far = [particle("A", 0, 0), particle("B", 1e30, 0), particle("C", 0, 1, fixed=[True, True])]
+    document = model(far, [rod("A", "B", density=6.15), rod("A", "C", bending_stiffness=1e3)])
+    (tmp_path / "m.json").write_text(json.dumps(document))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        status = main(["render", str(tmp_path / "m.json"), "--output", str(tmp_path / "m.png"), *words])
+    assert status == (1 if "--at" in words else 2)
+    assert "mass is 3.075e+30 kg, too large to compute with" in capsys.readouterr().err
 
 
 def test_pictures_of_the_window(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,7 +14,7 @@ import pytest
 from pinjoint import Session
 from pinjoint.components.clock import PersistentContacts
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import spawn_rods
+from pinjoint.components.rod import Rod
 from pinjoint.systems.broad_phase import gaps, nearest
 from pinjoint.systems.collision.columns import Contact, Group
 from pinjoint.systems.collision.driven.columns import Goal, Order, Phase, Real, Whole
@@ -23,7 +23,7 @@ from pinjoint.systems.collision.driven.kernels.steps import MOST_ENDS_TRIED, col
 from pinjoint.systems.collision.driven.neighbours import DRIVEN, NeighbourList
 from pinjoint.systems.collision.kernels.impact import respond
 from pinjoint.systems.collision.system import persistent_contacts
-from pinjoint.systems.edit.pull import hand_on
+from pinjoint.systems.edit.pull import Hand
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.physics.pace import natural_pace
 from pinjoint.systems.program.compiler import Compile, GeneratedModule, entries_to
@@ -417,7 +417,7 @@ def test_a_hand_presses_a_disc_onto_a_node() -> None:
     """From aside, then from above; it never passes, and all work is accounted for, in impacts and contact."""
     session = Session.open(truss({"position": [0.2, 1.5]}))
     session.simulation.advance(0)
-    hand = hand_on(session.model, session.view, session.particles["ball"], lambda: natural_pace(session.model))
+    hand = Hand.on(session.model, session.view, session.particles["ball"], lambda: natural_pace(session.model))
     for k in range(20):
         session.document.timeline.hold(hand.at((0.8, -0.8 if k < 10 else -1.1)))
         session.run(time=0.1)
@@ -548,7 +548,7 @@ def test_an_impact_along_a_row_of_discs_ends(count: int) -> None:
     """It leaves some that approach each other by round-off, from which no other impact follows."""
     model = touching(count, 1)
     model.create(Particle, 2, position=[(5.0, -5.0), (6.0, -5.0)], fixed=[(True, True), (False, False)])
-    spawn_rods(model, [(count, count + 1)])
+    model.create(Rod, between=[(count, count + 1)])
     session = Session(model)
     session.run(steps=3)
     speed = session.particles.velocity[:count, 0]

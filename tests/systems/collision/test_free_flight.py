@@ -11,7 +11,7 @@ from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.documents.models import document
 from pinjoint.systems.collision.driven.neighbours import NeighbourList
-from pinjoint.systems.edit.pull import hand_on
+from pinjoint.systems.edit.pull import Hand
 from pinjoint.systems.physics.pace import natural_pace
 from tests.systems.collision.test_driven_collisions import box, energy_of_discs, gaps_of, state
 
@@ -225,7 +225,7 @@ def test_impacts_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
 def pull(session: Session, name: str, anchors: list[tuple[float, float]], steps: int = 40) -> None:
     """Pull a particle to displacements, one after the other, for so many steps each, and let go."""
     session.simulation.advance(0)
-    hand = hand_on(session.model, session.view, session.particles[name], lambda: natural_pace(session.model))
+    hand = Hand.on(session.model, session.view, session.particles[name], lambda: natural_pace(session.model))
     for anchor in anchors:
         session.document.timeline.hold(hand.at(anchor))
         session.run(steps=steps)
@@ -291,7 +291,7 @@ def test_stepping_back_replays_what_a_hand_did_with_the_same_bits() -> None:
     session = Session.open(gas(restitution=0.9))
     session.run(steps=20)
     session.simulation.advance(0)
-    hand = hand_on(session.model, session.view, session.particles["p7"], lambda: natural_pace(session.model))
+    hand = Hand.on(session.model, session.view, session.particles["p7"], lambda: natural_pace(session.model))
     states = {}
     for anchor in ((0.2, 0.1), (-0.1, 0.2)):
         session.document.timeline.hold(hand.at(anchor))

@@ -5,7 +5,7 @@ import numpy as np
 from pinjoint.components.camera import Camera, Viewport
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import spawn_rods
+from pinjoint.components.rod import Rod
 from pinjoint.components.view import View
 from pinjoint.components.world import Derivation
 from pinjoint.systems.render.marks import Panel, Picture
@@ -20,7 +20,7 @@ def triangle() -> Model:
     model = Model()
     fixed = [(False, True), (False, False), (True, True)]
     model.create(Particle, 3, name=["A", "B", "C"], position=[(0, 0), (1, 1), (2, 0)], fixed=fixed)
-    spawn_rods(model, [(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"])
+    model.create(Rod, 3, between=[(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"])
     fill(model, "rods.axial_force", [-28.34277, -198.02746, 20.0679])
     fill(model, "particles.applied_force", [(0, 0), (120, -160), (0, 0)])
     fill(model, "particles.reaction", [(0, 20.01479), (0, 0), (-120, 139.98521)])

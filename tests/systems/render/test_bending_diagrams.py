@@ -5,11 +5,14 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pygame
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.bent import AXIAL, MOMENT, QUANTITIES, SHEAR
+from pinjoint.components.bent import AXIAL, MOMENT, SHEAR
+from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.tags import DiagramShown
+from pinjoint.systems.render.backends.pygame_canvas import Canvas
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Picture, Strokes, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import faded
@@ -192,7 +195,7 @@ def bundled_at_rest(width: int, height: int) -> Session:
 @pytest.mark.parametrize("size", SIZES)
 def test_all_values_of_a_portal_are_told(size: tuple[int, int]) -> None:
     session = bundled_at_rest(*size)
-    for session.view.quantity in QUANTITIES:
+    for session.view.quantity in DIAGRAMS:
         said = [mark.text for mark in picture_of(session).marks if isinstance(mark, Text)]
         assert not [text for text in said if "hidden" in text], session.view.quantity
         assert {"2.600 kN", "32.40 kN", "20.58 kN·m"} <= set(said)
@@ -201,7 +204,7 @@ def test_all_values_of_a_portal_are_told(size: tuple[int, int]) -> None:
 @pytest.mark.parametrize("size", SIZES)
 def test_diagrams_keep_off_the_legend(size: tuple[int, int]) -> None:
     session = bundled_at_rest(*size)
-    for session.view.quantity in QUANTITIES:
+    for session.view.quantity in DIAGRAMS:
         picture = picture_of(session)
         rows = {mark.y for mark in picture.marks if isinstance(mark, Text) and mark.text in MEANINGS.values()}
         tops = [
@@ -223,6 +226,13 @@ def test_diagrams_grow_as_a_person_wants() -> None:
     assert np.ptp(areas(picture_of(session), session, "CD")[:, 0]) > 1.5 * far
 
 
+def test_the_largest_scale_that_a_model_can_have_leaves_numbers_to_draw_with() -> None:
+    picture, _ = shown(portal_at_rest(), MOMENT, diagram_scale=1e30)
+    for corners in all_areas(picture).values():
+        assert np.abs(corners).max() < 1e8
+    Canvas().draw(pygame.Surface((1000, 720), 0, 32), picture)
+
+
 def test_only_tagged_rods_if_only_these_are_wanted() -> None:
     _, session = shown(portal_at_rest(), MOMENT)
     session.view.all_diagrams = False
@@ -238,7 +248,7 @@ def test_unknown_forces_are_not_drawn() -> None:
     assert not [m for m in picture.marks if isinstance(m, Fills) and m.corners.shape[1] > 4]
 
 
-@pytest.mark.parametrize("quantity", QUANTITIES)
+@pytest.mark.parametrize("quantity", DIAGRAMS)
 def test_a_truss_shows_axial_forces_whatever_is_chosen(quantity: str) -> None:
     session = Session.open("isostatic")
     session.get_ready()

@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from pinjoint.components.camera import Camera, Viewport
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import spawn_rods
+from pinjoint.components.rod import Rod
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import Status, View
 from pinjoint.systems.render.backends.pygame_canvas import Canvas, _rounded, _small_rounded
 from pinjoint.systems.render.backends.raster import stroke_coverage
-from pinjoint.systems.render.marks import Panel, Picture, Stamps, Strokes, Text
+from pinjoint.systems.render.marks import Fills, Panel, Picture, Stamps, Strokes, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.typography import WEIGHTS, text_width
@@ -31,7 +31,7 @@ def triangle() -> Model:
     model = Model()
     fixed = [(False, True), (False, False), (True, True)]
     model.create(Particle, 3, name=["A", "B", "C"], position=[(0, 0), (1, 1), (2, 0)], fixed=fixed)
-    spawn_rods(model, [(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"])
+    model.create(Rod, 3, between=[(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"])
     return model
 
 
@@ -204,3 +204,15 @@ def test_any_name_is_drawn(name: str) -> None:
         )
     drawn = pygame.surfarray.array2d(surface) != surface.map_rgb((255, 255, 255))
     assert drawn.any() == (name != "")
+
+
+@pytest.mark.parametrize("reach", [3e4, 4e4, 1e6])
+def test_what_is_filled_may_reach_far_beyond_the_window(reach: float) -> None:
+    """A diagram of which a person looks at a small part."""
+    surface = blank(100, 100)
+    corners = np.array([[[-reach, 40.0], [reach, 40.0], [reach, 60.0], [-reach, 60.0]]])
+    Canvas().draw(
+        surface, Picture(Viewport(0, 0, 100, 100), (255, 255, 255, 255), [Fills(corners, (0, 0, 255, 255))])
+    )
+    assert colour_at(surface, (50, 50)) == colour_at(surface, (2, 58)) == (0, 0, 255)
+    assert colour_at(surface, (50, 30)) == colour_at(surface, (50, 70)) == (255, 255, 255)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pinjoint.components.camera import Viewport
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import spawn_rods
+from pinjoint.components.rod import Rod
 from pinjoint.components.tags import Hovered, Selected
 from pinjoint.components.view import Status
 from pinjoint.components.written import number
@@ -30,7 +30,7 @@ def random_model(seed: int, particles: int, rods: int) -> Model:
     )
     pairs = np.array(list(itertools.combinations(range(particles), 2)))
     chosen = rng.choice(len(pairs), min(rods, len(pairs)), replace=False)
-    spawn_rods(model, pairs[chosen])
+    model.create(Rod, len(pairs[chosen]), between=pairs[chosen])
     fill(model, "rods.axial_force", rng.normal(0, 100, len(chosen)))
     fill(model, "particles.applied_force", rng.normal(0, 50, (particles, 2)))
     return model
@@ -93,7 +93,7 @@ def test_very_short_rods_show_no_values_and_say_so() -> None:
     model = Model()
     count = 60
     model.create(Particle, count, position=[(0.1 * i, 0.0) for i in range(count)])
-    spawn_rods(model, [(i, i + 1) for i in range(count - 1)])
+    model.create(Rod, count - 1, between=[(i, i + 1) for i in range(count - 1)])
     fill(model, "rods.axial_force", np.arange(1.0, count))
     texts = picture_of(model, all_diagrams=True).texts
     assert any("zoom in" in text for text in texts)
@@ -174,7 +174,7 @@ def test_values_come_and_go_only_where_forces_change_much() -> None:
 def test_values_of_many_forces_leave_the_rods_to_their_own_where_there_is_room() -> None:
     model, count = Model(), 30
     model.create(Particle, count, position=[(0.0, float(i)) for i in range(count)])
-    spawn_rods(model, [(i, i + 1) for i in range(count - 1)])
+    model.create(Rod, count - 1, between=[(i, i + 1) for i in range(count - 1)])
     fill(model, "rods.axial_force", np.arange(1.0, count))
     fill(model, "particles.applied_force", np.tile([0.0, -0.25], (count, 1)))
     view = view_of(model, 400, 2400, all_diagrams=True)

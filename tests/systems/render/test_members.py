@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.bent import QUANTITIES, axes
+from pinjoint.components.bent import Axes
+from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import Shape
 from pinjoint.systems.edit.picking import pick_rod
@@ -56,7 +57,7 @@ def test_rods_are_curves_through_the_slopes_of_their_ends() -> None:
     way = rod.end - rod.start
     angle = np.arctan2(-way[:, 1], way[:, 0])
     assert (np.diff(angle) > 0.0).all()
-    tangents = axes(session.model, np.array([0])).tangents(np.array([0.0, 1.0]))[0]
+    tangents = Axes.of(session.model, np.array([0])).tangents(np.array([0.0, 1.0]))[0]
     wanted = np.arctan2(tangents[:, 1], tangents[:, 0])
     assert angle[[0, -1]] == pytest.approx(wanted, abs=0.1)
 
@@ -71,8 +72,8 @@ def test_a_selected_member_glows_along_its_curve() -> None:
 
 def test_members_are_picked_along_their_curves() -> None:
     session = bent_cantilever()
-    axis = axes(session.model, np.array([0])).points(np.array([0.5]))[0, 0]
-    chord = axes(session.model, np.array([0])).points(np.array([0.0, 1.0]))[0].mean(axis=0)
+    axis = Axes.of(session.model, np.array([0])).points(np.array([0.5]))[0, 0]
+    chord = Axes.of(session.model, np.array([0])).points(np.array([0.0, 1.0]))[0].mean(axis=0)
     camera = session.view.camera
     assert np.hypot(*(camera.to_pixels(axis) - camera.to_pixels(chord))) > 20.0
     assert pick_rod(session.model, session.view, tuple(camera.to_pixels(axis))) is session.rods["P0P1"]
@@ -220,7 +221,7 @@ def test_reactions_turn_in_diagrams() -> None:
     assert "36.00 kN" not in loads, "the arrows of the distributed force show it"
 
 
-@pytest.mark.parametrize("quantity", QUANTITIES)
+@pytest.mark.parametrize("quantity", DIAGRAMS)
 @pytest.mark.parametrize("size", [1e-300, 1e150, np.nan])
 def test_extreme_states_are_drawn_or_left_out(size: float, quantity: str) -> None:
     """Nothing raises, whatever a run that diverges has left."""

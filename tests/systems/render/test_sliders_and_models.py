@@ -43,3 +43,9 @@ def test_a_new_slider_lets_the_model_make_room() -> None:
     session.select(session.rods[4])
     session.press("ctrl+l")
     assert session.view.camera.scale > scale, "who looks closer is left alone"
+
+
+def test_in_a_low_window_a_load_above_is_whole() -> None:
+    session = opened(Window(640, 280))
+    session.update_view()
+    assert session.view.camera.to_pixels(drawn_places(session.model))[:, 1].min() > ARROW

@@ -3,9 +3,9 @@
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.bent import QUANTITIES
 from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import Hit, drawn_positions
@@ -18,6 +18,7 @@ from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.typography import capital_height
 from tests.reference.boxes import overlap, text_box
 from tests.reference.hits import hits_in, push
+from tests.systems.render.pictures import marks_of
 
 SIZES = [(1000, 720), (640, 480), (3840, 2160)]
 
@@ -55,7 +56,7 @@ def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
         *offered,
         *of_mods(draw=False),
         "pause",
-        *(f"diagram {quantity}" for quantity in QUANTITIES),
+        *(f"diagram {quantity}" for quantity in DIAGRAMS),
     }
 
 
@@ -283,3 +284,14 @@ def test_the_button_of_diagrams_is_lit_and_puts_them_out_whatever_is_selected() 
     push(session, "toggle diagrams")
     assert session.model.any_tagged(DiagramShown)
     assert not session.view.all_diagrams
+
+
+@pytest.mark.parametrize("width", [420, 1000])
+def test_a_menu_opens_at_the_pointer_and_says_if_there_is_more_of_it(width: int) -> None:
+    session = opened(size=(width, 480))
+    session.press("right click", session.view.camera.middle)
+    picture = compose_all(session.stages, load_theme("light"))[-1]
+    menu, entries = session.view.menu, {hit.item for hit in picture.hits if isinstance(hit.item, int)}
+    assert menu is not None
+    assert any(panel.left <= menu.at[0] + 1.0 < panel.left + panel.width for panel in marks_of(picture, Panel))
+    assert ("Wheel shows more" in picture.texts) == (len(entries) < len(menu.entries)) == (width == 420)

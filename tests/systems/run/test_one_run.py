@@ -15,7 +15,7 @@ from pinjoint.documents.format import ModelError
 from pinjoint.scripts.playing import Recorder, play
 from pinjoint.scripts.script import Script
 from pinjoint.systems.base import StopReason
-from pinjoint.systems.edit.pull import hand_on
+from pinjoint.systems.edit.pull import Hand
 from pinjoint.systems.program.program import Program
 from pinjoint.systems.run.program_steps import ProgramSteps
 from tests.reference import bits
@@ -205,7 +205,7 @@ def test_what_a_hand_did_within_steps_is_done_again(name: str) -> None:
     session = Session.open(CASES[name])
     session.press("space")
     session.frame(0.02)
-    hand = hand_on(session.model, session.view, session.particles["B"], lambda: 1.0)
+    hand = Hand.on(session.model, session.view, session.particles["B"], lambda: 1.0)
     session.document.timeline.hold(hand)
     for number in range(5):
         session.document.timeline.hold(hand.at((0.01 * number, 0.0)))
