@@ -12,7 +12,7 @@ of machine code is replaced:
 
 That is all that Pinjoint's own kernels need. Kernels of mods are interpreted only where nothing may be compiled, by the
 same rules, which do not cover all that numba does: whole numbers beyond 64 bits, other whole exponents, functions that
-overflow, or two kinds of numbers in one name may give other bits then, or an error.
+overflow, arrays that are filled as a whole, or two kinds of numbers in one name may give other bits then, or an error.
 """
 
 from __future__ import annotations
@@ -97,11 +97,6 @@ def _whole(rounding: Callable[[float], int]) -> Callable[[float], int]:
     return converted
 
 
-def _fill(row: list[Any], span: slice, value: Any) -> None:
-    for k in range(*span.indices(len(row))):
-        row[k] = value
-
-
 def _sum(rows: list[Any], column: int) -> float:
     total = 0.0
     for row in rows:
@@ -145,7 +140,6 @@ _HELPERS = {
     "root__": math.sqrt,
     "floor__": math.floor,
     "whole__": _whole(int),
-    "fill__": _fill,
     "part__": _Part,
     "sum__": _sum,
 }
@@ -283,20 +277,6 @@ class _Rewriting(ast.NodeTransformer):
         (early, a), (first, b) = (self._twice(self.visit(argument)) for argument in node.args)
         return ast.copy_location(ast.IfExp(ast.Compare(first, [better], [early]), b, a), node)
 
-    def visit_Compare(self, node: ast.Compare) -> ast.expr:
-        self.generic_visit(node)
-        if isinstance(node.ops[0], ast.In | ast.NotIn) and isinstance(node.comparators[0], ast.Tuple):
-            first, second = self._twice(node.left)
-            tests: list[ast.expr] = [
-                ast.Compare(second if k else first, [ast.Eq()], [entry])
-                for k, entry in enumerate(node.comparators[0].elts)
-            ]
-            found: ast.expr = ast.BoolOp(ast.Or(), tests) if len(tests) > 1 else tests[0]
-            if isinstance(node.ops[0], ast.NotIn):
-                found = ast.UnaryOp(ast.Not(), found)
-            return ast.copy_location(found, node)
-        return node
-
     # arrays, which are lists
 
     def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
@@ -317,17 +297,6 @@ class _Rewriting(ast.NodeTransformer):
             for index in outer:
                 row = ast.Subscript(row, index, ast.Load())
             return ast.copy_location(ast.Subscript(row, last, node.ctx), node)
-        self.generic_visit(node)
-        return node
-
-    def visit_Assign(self, node: ast.Assign) -> ast.stmt:
-        (target,) = node.targets if len(node.targets) == 1 else (None,)
-        if isinstance(target, ast.Subscript) and isinstance(target.slice, ast.Slice):
-            span = target.slice
-            ends = [part or ast.Constant(None) for part in (span.lower, span.upper, span.step)]
-            filled = ast.Expr(_call_of("fill__", target.value, _call_of("slice", *ends), node.value))
-            rewritten: ast.stmt = self.visit(ast.fix_missing_locations(ast.copy_location(filled, node)))
-            return rewritten
         self.generic_visit(node)
         return node
 

@@ -1,10 +1,12 @@
 """Parts: kernels that only other kernels call."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 from numba import njit
 
+from pinjoint.systems.program.interpreter import in_lists
 from pinjoint.systems.program.kernel import part
 from pinjoint.systems.program.machine_code import machine_code
 
@@ -62,3 +64,15 @@ def test_plain_numba_computes_the_same_bits(fresh_process: Callable[..., str]) -
     assert (plain[0], own[0]) == ("True", "False")
     assert plain[1] == own[1]
     assert plain[2] != own[2]
+
+
+@part()
+def quotients(x, y):
+    return x / y / (y * y) / (y + y) / (y * y) / (y - x) / (y + x) / (y * y) / y / (x * y) / (y + y) / (x * x)
+
+
+def test_a_quotient_of_quotients_grows_with_each_once() -> None:
+    """Written into both branches of what looks for a divisor of 0, each doubled all that came before."""
+    assert len(in_lists(quotients).__code__.co_code) < 2000
+    assert quotients(3.0, 7.0) == quotients.py_func(3.0, 7.0)
+    assert math.isnan(quotients(0.0, 0.0))

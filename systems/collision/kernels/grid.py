@@ -169,8 +169,10 @@ def _quantile(grid, share):
 
 
 @compiled
-def has_room(grid, layers):
-    """True if so many layers fit into the arrays."""
+def emptied(grid, layers):
+    """Take all boxes out of the buckets; False if so many layers do not fit into the arrays."""
+    for bucket in range(grid.heads.shape[0]):
+        grid.heads[bucket] = NONE
     return 2 * grid.boxes.shape[0] * layers <= _plane(grid)
 
 
@@ -327,9 +329,8 @@ def list_pairs(pairs, grid):
     Returns how many, also where there is no room for all of them, or NONE if the grid has no room; and its layers.
     """
     layers, count, room = _choose_layers(grid, _cell_size(grid), 0), 0, pairs.shape[0]
-    if not has_room(grid, layers):
+    if not emptied(grid, layers):
         return NONE, layers
-    grid.heads[:] = NONE
     # from the last on, so that those entered have higher numbers
     for i in range(grid.boxes.shape[0] - 1, -1, -1):
         left, bottom, right, top = grid.boxes[i]

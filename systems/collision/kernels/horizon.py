@@ -10,9 +10,9 @@ import math
 from pinjoint.systems.collision.columns import NONE, Count, Disc, Number, Reason
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.grid import (
+    emptied,
     enclose,
     enter,
-    has_room,
     neighbours,
     set_layers,
 )
@@ -131,9 +131,8 @@ def _fill(most, discs, grid, constraints, queue, numbers, counts):
         enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.HORIZON_END])
     set_layers(grid, numbers, counts)
     layers = counts[Count.LAYERS]
-    if not has_room(grid, layers):
+    if not emptied(grid, layers):
         return Reason.GRID_FULL, 0
-    grid.heads[:] = NONE
     counts[Count.QUEUED] = 0
     pairs = 0
     for i in range(discs.shape[0]):  # two that are held have no impact

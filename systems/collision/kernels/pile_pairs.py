@@ -18,7 +18,7 @@ from pinjoint.systems.collision.columns import (
     Reason,
 )
 from pinjoint.systems.collision.kernels import compiled
-from pinjoint.systems.collision.kernels.grid import enclose, enter, has_room, neighbours, set_layers, sort
+from pinjoint.systems.collision.kernels.grid import emptied, enclose, enter, neighbours, set_layers, sort
 from pinjoint.systems.collision.kernels.horizon import is_joined
 from pinjoint.systems.collision.kernels.persistent_contact import (
     enter_persistent,
@@ -104,9 +104,8 @@ def _list_pairs(h, discs, grid, constraints, pile, numbers, counts):
         grid.boxes[i, 3] += room
     set_layers(grid, numbers, counts)
     layers = counts[Count.LAYERS]
-    if not has_room(grid, layers):
+    if not emptied(grid, layers):
         return Reason.GRID_FULL
-    grid.heads[:] = NONE
     pairs = 0
     for i in range(discs.shape[0]):
         left, bottom, right, top = grid.boxes[i]
