@@ -68,9 +68,7 @@ class StopReason(IntEnum):
     REVIEW = 1  # a fixed number of steps since the step size was last reviewed
     REST = 2  # nothing moves any more
     DIVERGED = 3  # energy came from nowhere, or a number is not finite
-    UNRESOLVED = (
-        4  # no step, however small, has a finite result, or too many lead to an impact or a time to show
-    )
+    UNRESOLVED = 4  # no step, however small, has a finite result, or too many small ones lead to its end
     EVENT = 5  # the quantity of an Event changed sign
     FAILED = 6  # a kernel raised an error
 
