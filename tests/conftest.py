@@ -1,5 +1,6 @@
 """What several test folders share."""
 
+import json
 import os
 import signal
 import subprocess
@@ -7,10 +8,12 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import chdir
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
 
+from pinjoint.commands.command_line import main
 from pinjoint.components.language import ENGLISH, spoken
 from pinjoint.documents import library, preferences
 from pinjoint.systems.program.compiler import Choice
@@ -84,6 +87,22 @@ def hears_interrupts() -> Iterator[None]:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture
+def answer(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., Any]:
+    """Run a command that ends with `status`; returns the JSON that it prints. A model among its words is put into a file."""
+
+    def run(*words: str | Mapping[str, Any], status: int = 0) -> Any:
+        file, given = tmp_path / "model.json", []
+        for word in words:
+            if not isinstance(word, str):
+                file.write_text(json.dumps(word), encoding="utf-8")
+            given.append(word if isinstance(word, str) else str(file))
+        assert main([*given, "--format", "json"]) == status
+        return json.loads(capsys.readouterr().out)
+
+    return run
 
 
 @pytest.fixture

@@ -93,25 +93,25 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
     return found
 
 
-@pytest.fixture
-def app(compiler: Compiler) -> Iterator[App]:
-    window = App(models.load("isostatic"), preparation=Preparation())
+def window_of(model: Model, compiler: Compiler) -> Iterator[App]:
+    """A window that has begun to compile."""
+    window = App(model, preparation=Preparation())
     until(window, lambda: bool(compiler.processes))
     yield window
     assert window.preparation is not None
     window.preparation.close()
     window.close()
+
+
+@pytest.fixture
+def app(compiler: Compiler) -> Iterator[App]:
+    yield from window_of(models.load("isostatic"), compiler)
 
 
 @pytest.fixture
 def large(compiler: Compiler) -> Iterator[App]:
     """A model that waits."""
-    window = App(lattice(600, damping=1.0), preparation=Preparation())
-    until(window, lambda: bool(compiler.processes))
-    yield window
-    assert window.preparation is not None
-    window.preparation.close()
-    window.close()
+    yield from window_of(lattice(600, damping=1.0), compiler)
 
 
 def end(process: Process, said: str = "\n", status: int = 0) -> None:

@@ -3,11 +3,11 @@
 import io
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from pinjoint import Session, mods
-from pinjoint.commands.command_line import main
 from pinjoint.scripts.playing import Recorder, play
 from pinjoint.scripts.script import Script
 from tests.reference import bits
@@ -46,7 +46,7 @@ def mod(tmp_path: Path) -> Path:
 
 
 def test_a_mods_event_happens_at_the_same_time_to_the_bit_in_all_four_ways_of_running(
-    mod: Path, tmp_path: Path, unloaded: None, capsys: pytest.CaptureFixture[str]
+    mod: Path, tmp_path: Path, unloaded: None, answer: Any
 ) -> None:
     mods.load([mod])
     file = tmp_path / "held.json"
@@ -74,8 +74,7 @@ def test_a_mods_event_happens_at_the_same_time_to_the_bit_in_all_four_ways_of_ru
     assert played.simulation.events == expected
     assert bits.state(played.model) == bits.state(frames.model)
 
-    assert main(["run", str(file), "--at", "0.2", "--format", "json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+    found = answer("run", str(file), "--at", "0.2")
     (event,) = found["events"]
     assert (event["event"], event["time"], event["fallen"]) == ("breaking.rods", expected[0].time, ["AB"])
     assert found["states"][-1]["rods"] == {}

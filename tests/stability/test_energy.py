@@ -1,13 +1,10 @@
 """Energy that steps make or lose: told where it matters, stopped where it is most of it, and never called rest."""
 
-import json
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from pinjoint import Session
-from pinjoint.commands.command_line import main
 from pinjoint.components.settings import AUTOMATIC
 from pinjoint.documents import models
 from pinjoint.systems.physics.integrators import INTEGRATORS
@@ -138,15 +135,11 @@ def test_motion_that_is_too_slow_for_its_numbers_is_not_rest() -> None:
 
 
 @pytest.mark.parametrize("words", [["--at", "20"], ["--until-rest"]])
-def test_a_motion_that_alternates_is_found_out_however_long_it_is_to_run(
-    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_motion_that_alternates_is_found_out_however_long_it_is_to_run(words: list[str], answer: Any) -> None:
     """At Verlet's stable step a mass under a force is at 0 and at twice the equilibrium in turn, with the right energy."""
     made = oscillator(1000.0, mass=1.0, force=1.0)
     made["settings"] = {"integrator": "velocity_verlet", "time_step": 0.002}
-    (tmp_path / "made.json").write_text(json.dumps(made), encoding="utf-8")
-    assert main(["run", str(tmp_path / "made.json"), "--format", "json", *words]) == 1
-    found = json.loads(capsys.readouterr().out)
+    found = answer("run", made, *words, status=1)
     assert found["status"] == "diverged"
     assert "in the same state again" in found["message"]
     session = Session.open(made)

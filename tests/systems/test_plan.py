@@ -2,7 +2,6 @@
 
 import csv
 import io
-import json
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -97,13 +96,8 @@ def go(session: Session, scene: str) -> None:
 # --- what the command prints --------------------------------------------------------------------------------
 
 
-def planned(capsys: pytest.CaptureFixture[str], *words: str) -> Any:
-    assert main(["plan", *words, "--format", "json"]) == 0
-    return json.loads(capsys.readouterr().out)
-
-
-def test_in_pause_no_time_passes(capsys: pytest.CaptureFixture[str]) -> None:
-    found = planned(capsys, "isostatic", "--scene", "pause")
+def test_in_pause_no_time_passes(answer: Any) -> None:
+    found = answer("plan", "isostatic", "--scene", "pause")
     assert found["scene"] == "pause"
     assert list(found["phases"]) == ["input", "edit", "step", "events", "render"]
     assert found["phases"]["step"] == []
@@ -112,14 +106,12 @@ def test_in_pause_no_time_passes(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize("scene", ["properties", "save", "load"])
-def test_in_forms_nothing_of_physics_is_active(capsys: pytest.CaptureFixture[str], scene: str) -> None:
-    assert planned(capsys, "isostatic", "--scene", scene)["phases"]["step"] == []
+def test_in_forms_nothing_of_physics_is_active(answer: Any, scene: str) -> None:
+    assert answer("plan", "isostatic", "--scene", scene)["phases"]["step"] == []
 
 
-def test_in_simulation_what_the_model_needs_acts_and_the_rest_says_why_not(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    found = planned(capsys, "isostatic", "--scene", "simulation")
+def test_in_simulation_what_the_model_needs_acts_and_the_rest_says_why_not(answer: Any) -> None:
+    found = answer("plan", "isostatic", "--scene", "simulation")
     assert found["phases"]["step"] == [
         "run.time",
         "physics.elasticity_after_yielding",
@@ -136,8 +128,8 @@ def test_in_simulation_what_the_model_needs_acts_and_the_rest_says_why_not(
     assert why["physics.rk4"] == "physics.dop853 integrates"
 
 
-def test_every_system_is_planned_or_left_out_once(capsys: pytest.CaptureFixture[str]) -> None:
-    found = planned(capsys, "ball_on_truss", "--set", "settings.integrator=rk4")
+def test_every_system_is_planned_or_left_out_once(answer: Any) -> None:
+    found = answer("plan", "ball_on_truss", "--set", "settings.integrator=rk4")
     running = [name for names in found["phases"].values() for name in names]
     assert len(running) == len(set(running))
     assert not set(running) & set(found["left_out"])

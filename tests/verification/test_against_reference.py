@@ -123,28 +123,22 @@ def flights(draw: Callable[..., Any]) -> Document:
 SHARES = decimals(0.02, 0.5)  # of the stable step
 
 
+@pytest.mark.parametrize(
+    ("full", "damped", "integrator", "part"),
+    [
+        (True, True, "velocity_verlet", 1.0),
+        (True, True, "taylor2", 0.1),
+        (False, True, "velocity_verlet", 1.0),
+        (False, False, "velocity_verlet", 1.0),
+    ],
+    ids=["yielding, damped, loaded", "the same by the thesis scheme", "damped", "undamped"],
+)
 @settings(max_examples=15)
-@given(trusses(full=True, damped=True), SHARES)
-def test_yielding_damped_loaded_trusses_with_verlet(document: Document, share: float) -> None:
-    assert_agreement(document, "velocity_verlet", share)
-
-
-@settings(max_examples=15)
-@given(trusses(full=True, damped=True), SHARES)
-def test_yielding_damped_loaded_trusses_with_the_thesis_scheme(document: Document, share: float) -> None:
-    assert_agreement(document, "taylor2", 0.1 * share)
-
-
-@settings(max_examples=15)
-@given(trusses(full=False, damped=True), SHARES)
-def test_damped_elastic_trusses(document: Document, share: float) -> None:
-    assert_agreement(document, "velocity_verlet", share)
-
-
-@settings(max_examples=15)
-@given(trusses(full=False, damped=False), SHARES)
-def test_undamped_elastic_trusses(document: Document, share: float) -> None:
-    assert_agreement(document, "velocity_verlet", share)
+@given(st.data(), SHARES)
+def test_trusses(
+    full: bool, damped: bool, integrator: str, part: float, data: st.DataObject, share: float
+) -> None:
+    assert_agreement(data.draw(trusses(full=full, damped=damped)), integrator, part * share)
 
 
 @settings(max_examples=20)
@@ -171,19 +165,13 @@ def assert_agreement(document: Document, integrator: str, share: float) -> None:
     expected = REFERENCES[integrator](document, size, steps, largest)
     assume(largest.shortest > SHORTEST)
     assert session.time == pytest.approx(expected["time"], rel=1e-15)
-    found = {
-        "displacement": dict(
-            zip(session.particles.names, session.particles.displacement.tolist(), strict=True)
-        ),
-        "velocity": dict(zip(session.particles.names, session.particles.velocity.tolist(), strict=True)),
-        "reaction": dict(zip(session.particles.names, session.particles.reaction.tolist(), strict=True)),
-        "axial_force": dict(zip(session.rods.names, session.rods.axial_force.tolist(), strict=True)),
-        "plastic_strain": dict(zip(session.rods.names, session.rods.plastic_strain.tolist(), strict=True)),
-    }
     stiffest = max((rod["stiffness"] for rod in document["rods"]), default=0.0)
     largest.values["axial_force"] += ROUNDING / AGREEMENT * stiffest
-    for quantity, values in found.items():
-        assert_same(quantity, values, expected[quantity], largest.values[quantity])
+    of_particles, of_rods = ("displacement", "velocity", "reaction"), ("axial_force", "plastic_strain")
+    for table, quantities in ((session.particles, of_particles), (session.rods, of_rods)):
+        for quantity in quantities:
+            found = dict(zip(table.names, table.column(quantity).tolist(), strict=True))
+            assert_same(quantity, found, expected[quantity], largest.values[quantity])
     assert_same_energy(session, expected["energy"], largest.values["energy"])
 
 

@@ -1,7 +1,6 @@
 """Linear buckling: Euler's four loads, portals, columns under their own weight, and textbook matrices, assembled slowly."""
 
 import itertools
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -301,12 +300,10 @@ def test_notes_name_struts_and_strains() -> None:
 
 
 def test_the_command_prints_factors_modes_and_effective_lengths(
-    capsys: pytest.CaptureFixture[str], tmp_path: Any
+    answer: Any, capsys: pytest.CaptureFixture[str], tmp_path: Any
 ) -> None:
-    path = tmp_path / "column.json"
-    path.write_text(json.dumps(column(2, CLAMPED, HEADS["free"])))
-    assert main(["buckling", str(path), "--modes", "2", "--format", "json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+    path = tmp_path / "model.json"
+    found = answer("buckling", column(2, CLAMPED, HEADS["free"]), "--modes", "2")
     assert len(found["factors"]) == len(found["modes"]) == 2
     assert found["factors"] == sorted(found["factors"])
     assert set(found["modes"][0]) == {"P0", "P1", "P2"}
@@ -365,12 +362,12 @@ def test_slender_columns_keep_their_digits(stiffness: float) -> None:
     assert found.factors[0] / ((math.pi / 2 / LENGTH) ** 2 * EI) - 1.0 == pytest.approx(8.4e-11, rel=0.2)
 
 
-def test_a_factor_that_is_too_coarse_is_no_answer(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    path = tmp_path / "column.json"
+def test_a_factor_that_is_too_coarse_is_no_answer(
+    answer: Any, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "model.json"
     for parts, coarse in ((2, True), (3, True), (4, False)):  # three are worse than two
-        path.write_text(json.dumps(column(parts, CLAMPED, HEADS["clamped"])))
-        assert main(["buckling", str(path), "--modes", "1", "--format", "json"]) == coarse
-        found = json.loads(capsys.readouterr().out)
+        found = answer("buckling", column(parts, CLAMPED, HEADS["clamped"]), "--modes", "1", status=coarse)
         assert (found["factors"] == []) is coarse
         assert (found["upper_bounds"] == []) is not coarse
         assert (found["effective_length"] == {}) is coarse

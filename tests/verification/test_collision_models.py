@@ -1,13 +1,12 @@
 """The bundled models of collisions against the formulas that their descriptions promise."""
 
-import json
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 from pinjoint import Session
-from pinjoint.commands.command_line import main
 from pinjoint.included.collisions import panels
 from tests.reference.scenes_of_discs import deepest
 
@@ -112,10 +111,9 @@ SIX = {  # velocities after the impact, exact
 
 
 @pytest.mark.parametrize("case", SIX)
-def test_velocities_after_the_thesis_impacts(case: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_velocities_after_the_thesis_impacts(case: str, answer: Any) -> None:
     """By `pinjoint run`."""
-    assert main(["run", f"collision_{case}", "--at", "0.2", "--format", "json"]) == 0
-    final = json.loads(capsys.readouterr().out)["states"][-1]
+    final = answer("run", f"collision_{case}", "--at", "0.2")["states"][-1]
     assert final["collisions"] == 1
     for particle, expected in zip(final["particles"].values(), SIX[case], strict=True):
         assert particle["velocity"] == pytest.approx(expected, rel=1e-12, abs=1e-12)

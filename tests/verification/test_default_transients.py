@@ -1,6 +1,5 @@
 """What runs by default, `automatic` with its error controlled, against transients to nearly full precision."""
 
-import json
 from typing import Any
 
 import numpy as np
@@ -9,7 +8,6 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from pinjoint import Session
-from pinjoint.commands.command_line import main
 from pinjoint.documents import document as documents
 from pinjoint.systems.physics.spectrum import spectrum
 from tests.benchmarks.models import lattice
@@ -146,18 +144,14 @@ def test_a_lattice_of_several_hundred_rods_is_exact_in_forces_and_speeds_too(cab
         assert np.abs(run.table(table).column(name) - true).max() <= within * np.abs(true).max()
 
 
-def test_a_run_too_large_for_error_control_says_so(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_run_too_large_for_error_control_says_so(monkeypatch: pytest.MonkeyPatch, answer: Any) -> None:
     monkeypatch.setattr("pinjoint.systems.physics.automatic.AFFORDABLE", 2)
     monkeypatch.setattr("pinjoint.systems.run.measured_error.IN_A_COMMAND", 0)
-    words = ["run", "isostatic", "--at", "0.001", "--format", "json"]
-    main(words)
-    found = json.loads(capsys.readouterr().out)
+    words = ["run", "isostatic", "--at", "0.001"]
+    found = answer(*words)
     assert found["integrator"] == "velocity_verlet"
     assert found["error_estimate"] is None
     assert "--measure-error" in found["message"]
-    main([*words, "--measure-error"])
-    found = json.loads(capsys.readouterr().out)
+    found = answer(*words, "--measure-error")
     assert found["error_estimate"]["relative"] > 0.0
     assert "--measure-error" not in found["message"]

@@ -1,6 +1,5 @@
 """The error that a run is shown with, against its true error."""
 
-import json
 import math
 from typing import Any
 
@@ -197,12 +196,11 @@ def test_there_is_none_where_states_alternate() -> None:
     assert session.document.assessment.error(10**9) is None
 
 
-def test_the_error_is_in_the_report(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["run", "isostatic", "--at", "0.002", "--integrator", "velocity_verlet", "--format"]
-    assert main([*words, "json"]) == 0
-    found = json.loads(capsys.readouterr().out)["error_estimate"]
+def test_the_error_is_in_the_report(answer: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["run", "isostatic", "--at", "0.002", "--integrator", "velocity_verlet"]
+    found = answer(*words)["error_estimate"]
     assert 0.0 < found["displacement"] < 0.01 * found["relative"]  # of some millimetres
-    assert main([*words, "table"]) == 0
+    assert main([*words, "--format", "table"]) == 0
     names = {"displacements": "", "velocities": "_velocity", "axial forces": "_axial_force"}
     shares = ", ".join(f"{name} {found[f'relative{of}']:.7g}" for name, of in names.items())
     said = "errors as shares of the largest value, measured by a run with finer steps:"
@@ -224,11 +222,9 @@ def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
     assert readout.rows[-1][0] == "numerical imbalance"
 
 
-def test_at_rest_time_that_passes_without_steps_is_not_run_again(capsys: pytest.CaptureFixture[str]) -> None:
-    estimates = []
-    for how in (["--until-rest"], ["--at", "20"]):
-        assert main(["run", "isostatic", *how, "--format", "json"]) == 0
-        estimates.append(json.loads(capsys.readouterr().out)["error_estimate"])
+def test_at_rest_time_that_passes_without_steps_is_not_run_again(answer: Any) -> None:
+    ways = (["--until-rest"], ["--at", "20"])
+    estimates = [answer("run", "isostatic", *how)["error_estimate"] for how in ways]
     assert estimates[0]["relative"] > 0.0
     assert estimates[0] == estimates[1]
 

@@ -1,7 +1,6 @@
 """Settling and curves of structures drawn by lot: yields, unloading, cables, mechanisms, rods that become straight."""
 
-import json
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pinjoint import Session
-from pinjoint.commands.command_line import main
 from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.systems.statics.path import Curve, Goal
@@ -123,14 +121,9 @@ def dangling(**properties: object) -> Document:
     return model(nodes, [rod(*pair) for pair in ("AB", "BC", "CA", "BD")])
 
 
-def test_a_place_that_nothing_holds_is_a_status_of_its_own(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_a_place_that_nothing_holds_is_a_status_of_its_own(answer: Any) -> None:
     """Forces are certain, the place of D is not; under the least weight it hangs, and is certain, too."""
-    path = tmp_path / "dangling.json"
-    path.write_text(json.dumps(dangling()))
-    assert main(["run", str(path), "--static", "--load-factors", "0.5,1", "--format", "json"]) == 1
-    run = json.loads(capsys.readouterr().out)
+    run = answer("run", dangling(), "--static", "--load-factors", "0.5,1", status=1)
     assert run["status"] == "neutral equilibrium"
     assert [state["load_factor"] for state in run["states"]] == [0.5, 1.0]
     assert run["states"][-1]["rods"]["BD"]["axial_force"] == pytest.approx(0.0, abs=1e-9)

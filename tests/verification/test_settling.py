@@ -1,7 +1,6 @@
 """Settling: equilibria, yielding, instability and collapse against closed forms and independent solvers."""
 
 import itertools
-import json
 import math
 from typing import Any
 
@@ -12,7 +11,6 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from pinjoint import Session
-from pinjoint.commands.command_line import main
 from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.systems.statics import loading
@@ -378,9 +376,8 @@ def test_snapping_back_and_forth() -> None:
     assert up.load_factor == pytest.approx(-limit, rel=RELATIVE)
 
 
-def test_collapse_names_the_rod_and_the_load(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", "isostatic_collapse", "--static", "--format", "json"]) == 1
-    run = json.loads(capsys.readouterr().out)
+def test_collapse_names_the_rod_and_the_load(answer: Any) -> None:
+    run = answer("run", "isostatic_collapse", "--static", status=1)
     assert run["status"] == "collapse"
     assert "rod BC yields" in run["message"]
     assert run["events"][-1]["rods"] == ["BC"]

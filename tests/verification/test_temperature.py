@@ -1,14 +1,13 @@
 """Rods that warm up or do not fit, and supports that settle: in statics, in motion and in linear theory."""
 
-import json
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 
 from pinjoint import Session
-from pinjoint.commands.command_line import main
 from pinjoint.components.field import FieldError
 from pinjoint.documents import models
 from pinjoint.systems.statics.settle import settle
@@ -134,10 +133,8 @@ def test_support_settlement_and_lack_of_fit_after_a_run() -> None:
     assert session.rods.axial_force == pytest.approx(list(exact["axial_force"].values()), rel=1e-6)
 
 
-def test_from_the_command_line_and_in_a_file(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["run", "hyperstatic", "--static", "--format", "json", "--set", "rods.AC.temperature_change=40"]
-    assert main(words) == 0
-    run = json.loads(capsys.readouterr().out)
+def test_from_the_command_line_and_in_a_file(answer: Any) -> None:
+    run = answer("run", "hyperstatic", "--static", "--set", "rods.AC.temperature_change=40")
     document = square((0, -100))
     document["rods"][4]["temperature_change"] = 40.0
     (exact,) = statics.solve(document)

@@ -1,8 +1,6 @@
 """Theory beside the simulation: linear answers, indeterminacy, influence lines, vibrations, `pinjoint verify`."""
 
-import json
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -281,14 +279,9 @@ def test_errors_are_relative_to_the_largest_exact_value() -> None:
     assert comparison.worst("simulation") is None
 
 
-def verify(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, dict[str, Any]]:
-    status = main(["verify", *words, "--format", "json"])
-    return status, json.loads(capsys.readouterr().out)
-
-
-def test_verify_puts_simulation_linear_and_exact_side_by_side(capsys: pytest.CaptureFixture[str]) -> None:
-    status, found = verify(capsys, "isostatic")
-    assert (status, found["status"], found["simulation"]["status"]) == (0, "verified", "at rest")
+def test_verify_puts_simulation_linear_and_exact_side_by_side(answer: Any) -> None:
+    found = answer("verify", "isostatic")
+    assert (found["status"], found["simulation"]["status"]) == ("verified", "at rest")
     force = found["rods"]["AB"]["axial_force"]
     assert force["exact"] == pytest.approx(-28.3427681444064, rel=1e-12)
     assert force["linear"] == pytest.approx(-28.2842712474619, rel=1e-12)
@@ -298,9 +291,8 @@ def test_verify_puts_simulation_linear_and_exact_side_by_side(capsys: pytest.Cap
     assert found["indeterminacy"] == {"static": 0, "internal": 0, "external": 0, "mechanisms": 0}
 
 
-def test_verify_points_out_a_rod_that_yielded_in_the_overshoot(capsys: pytest.CaptureFixture[str]) -> None:
-    status, found = verify(capsys, "overshoot_yield")
-    assert status == 0
+def test_verify_points_out_a_rod_that_yielded_in_the_overshoot(answer: Any) -> None:
+    found = answer("verify", "overshoot_yield")
     assert found["status"] == "differs from static theory"
     assert found["remarks"][0]["rods"] == ["AB"]
     assert found["message"].startswith(
@@ -308,17 +300,14 @@ def test_verify_points_out_a_rod_that_yielded_in_the_overshoot(capsys: pytest.Ca
     )
 
 
-def test_verify_says_where_an_unexplained_difference_is(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_verify_says_where_an_unexplained_difference_is(answer: Any) -> None:
     """One load is taken away again before the other comes: statics, which lets both grow, yields less."""
     limits = {"tensile_strength": 215, "compressive_strength": 215}
     model = trusses.square((0, 0), **limits)
     gone = {"kind": "table", "times": [0, 0.05, 0.1], "factors": [0, 1, 0]}
     model["loads"] = [{"on": "C", "force": [0, -270], "history": gone}, {"on": "C", "force": [0, -50]}]
-    (tmp_path / "model.json").write_text(json.dumps(model))
-    status, found = verify(capsys, str(tmp_path / "model.json"))
-    assert (status, found["status"]) == (1, "not verified")
+    found = answer("verify", model, status=1)
+    assert found["status"] == "not verified"
     assert found["message"].startswith(
         "The simulation came to rest in another state than the exact equilibrium: the "
     )
@@ -333,29 +322,28 @@ def test_verify_says_where_an_unexplained_difference_is(
     ],
 )
 def test_verify_does_not_measure_forces_by_those_that_are_only_rounding(
-    edge: dict[str, float], diagonal: dict[str, float], capsys: pytest.CaptureFixture[str], tmp_path: Path
+    edge: dict[str, float], diagonal: dict[str, float], answer: Any
 ) -> None:
     """Self-stress needs no support: the reactions are 0, and what a run leaves of them is beside the rods' forces."""
     model = trusses.square((0, 0))
     for rod in model["rods"]:
         rod.update(diagonal if rod["name"] == "AC" else edge)
-    (tmp_path / "model.json").write_text(json.dumps(model))
-    status, found = verify(capsys, str(tmp_path / "model.json"))
-    assert (status, found["status"]) == (0, "verified")
+    found = answer("verify", model)
+    assert found["status"] == "verified"
     assert found["worst"]["simulation"]["simulation_error"] < 1e-6
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    ("name", "status", "said"),
     [
-        ("collision_i", "The model has no rods"),
-        ("isostatic_collapse", "Plastic collapse at the load factor 0.868"),
-        ("pendulum", "bob along y"),
+        ("collision_i", "not verified", "The model has no rods"),
+        ("isostatic_collapse", "not verified", "Plastic collapse at the load factor 0.868"),
+        ("pendulum", "theory only", "bob along y"),
     ],
 )
-def test_verify_says_what_is_missing(capsys: pytest.CaptureFixture[str], name: str, said: str) -> None:
-    status, found = verify(capsys, name, "--theory-only")
-    assert (status, found["status"]) == ((0, "theory only") if name == "pendulum" else (1, "not verified"))
+def test_verify_says_what_is_missing(answer: Any, name: str, status: str, said: str) -> None:
+    found = answer("verify", name, "--theory-only", status=status == "not verified")
+    assert found["status"] == status
     assert said in found["message"]
 
 
@@ -432,12 +420,12 @@ def test_an_empty_model_has_no_theory_to_fail() -> None:
 
 
 def test_verify_leaves_out_a_simulation_that_takes_long_unless_it_is_asked_for(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    answer: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(comparison, "MOST_WORK", 100)
-    status, found = verify(capsys, "hyperstatic")
-    assert (status, found["status"], found["simulation"]["status"]) == (0, "theory only", "left out")
+    found = answer("verify", "hyperstatic")
+    assert (found["status"], found["simulation"]["status"]) == ("theory only", "left out")
     assert "--limit SECONDS lets it go on" in found["message"]
     assert found["rods"]["AB"]["axial_force"]["simulation"] is None
-    status, found = verify(capsys, "hyperstatic", "--limit", "60")
-    assert (status, found["status"]) == (0, "verified")
+    found = answer("verify", "hyperstatic", "--limit", "60")
+    assert found["status"] == "verified"

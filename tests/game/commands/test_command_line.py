@@ -90,10 +90,8 @@ def test_what_cannot_be_done_is_said_in_one_line(
     assert sentence in said.err
 
 
-def test_lists_of_numbers_may_begin_with_a_minus(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["run", "isostatic", "--static", "--format", "json", "--load-factors", "-0.5,0.5"]
-    assert main(words) == 0
-    states = json.loads(capsys.readouterr().out)["states"]
+def test_lists_of_numbers_may_begin_with_a_minus(answer: Any) -> None:
+    states = answer("run", "isostatic", "--static", "--load-factors", "-0.5,0.5")["states"]
     assert [state["load_factor"] for state in states] == [-0.5, 0.5]
 
 
@@ -106,14 +104,13 @@ def test_times_before_that_of_a_saved_run_are_refused(
     assert "The model is at t = 3.5 s already" in capsys.readouterr().err
 
 
-def test_a_file_whose_name_is_no_utf_8(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_whose_name_is_no_utf_8(tmp_path: Path, answer: Any) -> None:
     path = os.fsdecode(os.fsencode(tmp_path) + b"/b\xff.json")
     try:
         Path(path).write_text(json.dumps(MODEL), encoding="utf-8")
     except OSError:
         pytest.skip("such names are not possible here")
-    assert main(["run", path, "--static", "--format", "json"]) == 0
-    assert json.loads(capsys.readouterr().out)["model"].endswith("/b?.json")
+    assert answer("run", path, "--static")["model"].endswith("/b?.json")
 
 
 def test_a_reader_that_has_seen_enough_is_no_error() -> None:

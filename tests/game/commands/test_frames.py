@@ -36,14 +36,8 @@ def portal(tmp_path: Path) -> Path:
     return path
 
 
-def found(capsys: Out, *words: str) -> Any:
-    """What a command prints as JSON."""
-    assert main([*words, "--format", "json"]) == 0
-    return json.loads(capsys.readouterr().out)
-
-
-def test_verify_has_moments_beside_the_run_and_states_like_run(portal: Path, capsys: Out) -> None:
-    verified = found(capsys, "verify", str(portal))
+def test_verify_has_moments_beside_the_run_and_states_like_run(portal: Path, answer: Any) -> None:
+    verified = answer("verify", str(portal))
     assert verified["status"] == "verified"
     assert verified["count"] == {"rods": 3, "constraints": 5, "nodes": 4, "hinges": 0, "degree": 2}
     assert verified["indeterminacy"] == {"static": 2, "internal": 0, "external": 2, "mechanisms": 0}
@@ -53,7 +47,7 @@ def test_verify_has_moments_beside_the_run_and_states_like_run(portal: Path, cap
     for moments in verified["self_stress_moments"]:
         # a joint of two rods passes them on
         assert moments["AB"][1] == pytest.approx(moments["BC"][0], abs=1e-12)
-    (settled,) = found(capsys, "run", str(portal), "--static")["states"]
+    (settled,) = answer("run", str(portal), "--static")["states"]
     exact, linear = (verified["states"][way] for way in ("exact", "linear"))
     assert set(exact) == set(linear) == set(settled)
     for group in ("particles", "rods"):
@@ -70,8 +64,8 @@ def test_verify_has_moments_beside_the_run_and_states_like_run(portal: Path, cap
     assert distance in (0.0, 6.0)
 
 
-def test_verify_of_a_truss_has_states_and_what_it_had(capsys: Out) -> None:
-    verified = found(capsys, "verify", "isostatic")
+def test_verify_of_a_truss_has_states_and_what_it_had(answer: Any) -> None:
+    verified = answer("verify", "isostatic")
     assert verified["count"] == {"rods": 3, "constraints": 3, "nodes": 3, "degree": 0}
     assert "self_stress_moments" not in verified
     assert "bending_moment" not in verified["rods"]["AB"]
@@ -115,18 +109,18 @@ def test_a_sweep_measures_moments_of_settled_frames(portal: Path, tmp_path: Path
     assert abs(moments[0]) < abs(moments[1])
 
 
-def test_influence_lines_of_frames(portal: Path, capsys: Out) -> None:
+def test_influence_lines_of_frames(portal: Path, answer: Any) -> None:
     """By the equilibrium of the whole: a force on B along x is borne by both supports."""
-    lines = found(capsys, "verify", str(portal), "--influence", "A.x", "D.x", "A.y", "D.y", "AB")["influence"]
+    lines = answer("verify", str(portal), "--influence", "A.x", "D.x", "A.y", "D.y", "AB")["influence"]
     for axis, place in (("x", 0), ("y", 1)):
         total = sum(lines[f"{support}.{axis}"]["of"]["B"][place] for support in "AD")
         assert total == pytest.approx(-1.0, abs=1e-12)
     assert lines["AB"]["of"]["B"] == pytest.approx([-v for v in lines["A.y"]["of"]["B"]], abs=1e-12)
 
 
-def test_a_curve_ends_where_settling_does(portal: Path, capsys: Out) -> None:
-    curve = found(capsys, "curve", str(portal))
-    (settled,) = found(capsys, "run", str(portal), "--static")["states"]
+def test_a_curve_ends_where_settling_does(portal: Path, answer: Any) -> None:
+    curve = answer("curve", str(portal))
+    (settled,) = answer("run", str(portal), "--static")["states"]
     assert curve["complete"]
     assert curve["displacement"]["B.x"][-1] == pytest.approx(
         settled["particles"]["B"]["displacement"][0], rel=1e-9
@@ -136,8 +130,8 @@ def test_a_curve_ends_where_settling_does(portal: Path, capsys: Out) -> None:
     assert moments == pytest.approx(settled["rods"]["AB"]["bending_moment"], rel=1e-9)
 
 
-def test_the_error_of_a_run_counts_rotations_and_moments(portal: Path, capsys: Out) -> None:
-    error = found(capsys, "run", str(portal), "--at", "0.02")["error_estimate"]
+def test_the_error_of_a_run_counts_rotations_and_moments(portal: Path, answer: Any) -> None:
+    error = answer("run", str(portal), "--at", "0.02")["error_estimate"]
     assert 0.0 < error["relative_rotation"] < 1e-2
     assert 0.0 < error["relative_bending_moment"] < 1e-2
 

@@ -31,16 +31,10 @@ ENDLESS = {"impacts": BILLION_IMPACTS, "a stiff damper": STIFF_DAMPER}
 
 
 @pytest.mark.parametrize("model", ENDLESS.values(), ids=ENDLESS.keys())
-def test_a_run_that_is_interrupted_reports_what_it_had(
-    model: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = tmp_path / "endless.json"
-    path.write_text(json.dumps(model), encoding="utf-8")
-    main(["run", str(path), "--at", "1e-9"])  # compiles
-    capsys.readouterr()
+def test_a_run_that_is_interrupted_reports_what_it_had(model: dict[str, Any], answer: Any) -> None:
+    answer("run", model, "--at", "1e-9")  # compiles
     with interrupted_after(1.0):
-        assert main(["run", str(path), "--at", "1e-9,1e6", "--format", "json"]) == 130
-    run = json.loads(capsys.readouterr().out)
+        run = answer("run", model, "--at", "1e-9,1e6", status=130)
     assert run["status"] == "interrupted"
     assert run["message"].startswith("Interrupted at t = ")
     assert run["states"][0]["time"] == 1e-9

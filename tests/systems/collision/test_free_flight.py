@@ -1,6 +1,5 @@
 """Collisions in the program: events, energy, state and what a person is told, through Session."""
 
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -9,7 +8,6 @@ import numpy as np
 import pytest
 
 from pinjoint import Session
-from pinjoint.commands.command_line import main
 from pinjoint.documents.models import document
 from pinjoint.systems.collision.driven.neighbours import NeighbourList
 from pinjoint.systems.edit.pull import Hand
@@ -201,11 +199,9 @@ def test_particles_at_one_point_are_spread() -> None:
 # --- events --------------------------------------------------------------------------------------------------
 
 
-def test_impacts_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_impacts_are_told(tmp_path: Path, answer: Any) -> None:
     events = tmp_path / "events.csv"
-    command = ["run", "collision_ii", "--at", "0.05,0.2", "--format", "json", "--events", str(events)]
-    assert main(command) == 0
-    run = json.loads(capsys.readouterr().out)
+    run = answer("run", "collision_ii", "--at", "0.05,0.2", "--events", str(events))
     assert [s["collisions"] for s in run["states"]] == [0, 1]
     assert run["states"][1]["energy"]["dissipated_impact"] == pytest.approx(4.6875, rel=1e-12)
     head, line = events.read_text().splitlines()

@@ -7,32 +7,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pinjoint.components.camera import Camera, Viewport
-from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import Status, View
 from pinjoint.systems.render.backends.pygame_canvas import Canvas, _rounded, _small_rounded
 from pinjoint.systems.render.backends.raster import stroke_coverage
 from pinjoint.systems.render.marks import Fills, Panel, Picture, Stamps, Strokes, Text
 from pinjoint.systems.render.picture import compose
-from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.typography import WEIGHTS, text_width
 from tests.properties.limits import within
-
-LIGHT = load_theme("light")
+from tests.systems.render.pictures import LIGHT, triangle
 
 
 def blank(width: int = 600, height: int = 600) -> pygame.Surface:
     return pygame.Surface((width, height), 0, 32)
-
-
-def triangle() -> Model:
-    model = Model()
-    fixed = [(False, True), (False, False), (True, True)]
-    model.create(Particle, 3, name=["A", "B", "C"], position=[(0, 0), (1, 1), (2, 0)], fixed=fixed)
-    model.create(Rod, 3, between=[(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"])
-    return model
 
 
 def colour_at(surface: pygame.Surface, pixel: object) -> tuple[int, ...]:

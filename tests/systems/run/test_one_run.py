@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 
 from pinjoint import Session
-from pinjoint.commands.command_line import main
 from pinjoint.documents.document import document, parse
 from pinjoint.documents.format import ModelError
 from pinjoint.scripts.playing import Recorder, play
@@ -221,21 +220,19 @@ def test_what_a_hand_did_within_steps_is_done_again(name: str) -> None:
 
 
 @pytest.mark.parametrize("how", [["run", "isostatic", "--until-rest"], ["verify", "isostatic"]])
-def test_every_way_to_run_is_the_same_run(how: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_way_to_run_is_the_same_run(how: list[str], answer: Any) -> None:
     session = Session.open("isostatic")
     assert session.run(until="rest") == "at rest"
-    assert main([*how, "--format", "json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+    found = answer(*how)
     found = found.get("simulation", found)
     assert (found["time"], found["steps"]) == (session.time, session.model.clock.steps)
     assert session.model.clock.steps < 100
 
 
-def test_a_report_has_the_bits_of_a_session(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_report_has_the_bits_of_a_session(answer: Any) -> None:
     session = Session.open("isostatic")
     session.run(time=0.0023)
-    assert main(["run", "isostatic", "--at", "0.001,0.0023", "--format", "json"]) == 0
-    (_, found) = json.loads(capsys.readouterr().out)["states"]
+    (_, found) = answer("run", "isostatic", "--at", "0.001,0.0023")["states"]
     assert found["particles"]["B"]["displacement"] == list(session.particles["B"].displacement)
     assert found["rods"]["AB"]["axial_force"] == session.rods["AB"].axial_force
 

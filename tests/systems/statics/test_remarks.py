@@ -1,6 +1,5 @@
 """Remarks: what a run did that a slowly growing load would not have done, said where it comes to rest."""
 
-import json
 from typing import Any
 
 import numpy as np
@@ -8,7 +7,6 @@ import pytest
 from numba import njit
 
 from pinjoint import Session
-from pinjoint.commands.command_line import main
 from pinjoint.documents import models
 from pinjoint.systems.base import Law
 from pinjoint.systems.statics.settle import settle
@@ -59,9 +57,8 @@ def test_a_collapse_is_explained_where_its_remains_come_to_rest() -> None:
     assert "rod BC yields" in session.message
 
 
-def test_run_prints_it_and_lists_it_among_the_events(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", "overshoot_yield", "--format", "json"]) == 0
-    run = json.loads(capsys.readouterr().out)
+def test_run_prints_it_and_lists_it_among_the_events(answer: Any) -> None:
+    run = answer("run", "overshoot_yield")
     assert "only because the sudden load overshot" in run["message"]
     assert [(event["kind"], event["rods"]) for event in run["events"]] == [("overshoot", ["AB"])]
 
