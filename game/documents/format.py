@@ -125,20 +125,14 @@ def _check(stated: Any) -> None:
     if not isinstance(stated, Mapping):
         raise WrongValue("it must be an object such as {form}.", form='{"wind": "1.0"}')
     for name, version in stated.items():
-        if not isinstance(version, str) or not _is_version(version):
+        from packaging.version import InvalidVersion, Version  # only where there is a mod
+
+        try:
+            Version(version)
+        except (InvalidVersion, TypeError):
             raise WrongValue(
                 'the version of {name} is {version}; write it like "1.0".', name=name, version=quoted(version)
-            )
-
-
-def _is_version(text: str) -> bool:
-    from packaging.version import InvalidVersion, Version  # only where there is a mod
-
-    try:
-        Version(text)
-    except InvalidVersion:
-        return False
-    return True
+            ) from None
 
 
 def _is_older(stated: str, present: str) -> bool:
