@@ -19,7 +19,7 @@ from pinjoint.components.mistake import Explained, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.wording import missing
 from pinjoint.documents import models
-from pinjoint.documents.library import data_apart
+from pinjoint.documents.library import data_in
 from pinjoint.editor.frame import Frame
 from pinjoint.editor.scenes import all_scenes
 from pinjoint.interrupts import is_persons
@@ -365,7 +365,7 @@ class Trial:
         heard, known, patience = LOG.disabled, len(EXTENSIONS.faults), Choice.patience
         LOG.disabled, Choice.patience = True, PATIENCE
         try:
-            with data_apart():
+            with data_in():
                 self._try_all()
         finally:
             LOG.disabled, Choice.patience = heard, patience
