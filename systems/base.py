@@ -37,6 +37,7 @@ __all__ = [
     "CORES",
     "DEFAULT_LIMIT",
     "EVENT_INTERVAL",
+    "MOST_PARTS",
     "REVIEW_INTERVAL",
     "Commit",
     "Event",
@@ -67,7 +68,7 @@ class StopReason(IntEnum):
     REVIEW = 1  # a fixed number of steps since the step size was last reviewed
     REST = 2  # nothing moves any more
     DIVERGED = 3  # energy came from nowhere, or a number is not finite
-    UNRESOLVED = 4  # no step, however small, has a finite result
+    UNRESOLVED = 4  # no step, however small, has a finite result, or too many small ones lead to its end
     EVENT = 5  # the quantity of an Event changed sign
     FAILED = 6  # a kernel raised an error
 
@@ -93,6 +94,7 @@ class Mod(Protocol):
 CORES = "PINJOINT_CORES"  # of the environment: how many threads and processes compute
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
 REVIEW_INTERVAL = 8192  # steps between reviews of the step size, and between safe states
+MOST_PARTS = 512  # of a step that are taken to show a moment within it
 EVENT_INTERVAL = 16  # steps, at multiples of which systems of phase EVENTS run where there are no frames
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bears_between, bends, is_warm
 from pinjoint.systems import is_ours
-from pinjoint.systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
+from pinjoint.systems.base import MOST_PARTS, REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
 from pinjoint.systems.collision.driven.columns import Order, Real, Whole
 from pinjoint.systems.collision.kernels.grid import are_listed
 from pinjoint.systems.physics.automatic import SMALL
@@ -361,6 +361,7 @@ class Writer:
             "SLACK": 1e-12,  # share of the time to go by which the end of a fixed step may be late
             "SHADOW": float(self.integrator.guard),
             "CHECK_INTERVAL": self.integrator.check_interval,
+            "MOST_PARTS": MOST_PARTS,
             "REVIEW_INTERVAL": REVIEW_INTERVAL,
             **self.integrator.constants,
         }

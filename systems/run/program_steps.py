@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from pinjoint.components.model import Model
-from pinjoint.systems.base import REVIEW_INTERVAL, StopReason
+from pinjoint.systems.base import MOST_PARTS, StopReason
 from pinjoint.systems.program.program import Program
 from pinjoint.systems.run.programs import Programs
 from pinjoint.systems.run.recovery import FAILURES
@@ -48,8 +48,11 @@ class ProgramSteps:
         return self.program.advance(steps, until)
 
     def land(self, target: float) -> StopReason:
-        """Take the last, short step, to exactly the time `target` (s)."""
+        """Take the last, short step, to exactly the time `target` (s), or a part of it where that takes too many:
+        what happens asks for shorter steps then, which the whole ones that follow take.
+        """
         clock, reason = self._model.clock, StopReason.DONE
-        while clock.time < target and reason not in (StopReason.EVENT, *FAILURES):
-            _, reason = self.program.advance(REVIEW_INTERVAL, target, target)
+        last = clock.steps + MOST_PARTS
+        while clock.time < target and clock.steps < last and reason not in (StopReason.EVENT, *FAILURES):
+            _, reason = self.program.advance(last - clock.steps, target, target)
         return reason

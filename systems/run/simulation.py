@@ -436,7 +436,9 @@ class Simulation:
         return self.reason is StopReason.REST
 
     def show(self, target: float) -> bool:
-        """Show the moment `target` (s) within the next step; False if the step ends before, at an event or by failing."""
+        """Show the moment `target` (s) within the next step; False if the step ends before, at an event, by failing, or
+        since too many parts of it would lead there.
+        """
         self.rejoin()
         started, before = time.perf_counter(), self.present()
         try:

@@ -12,7 +12,7 @@ import math
 from typing import Protocol
 
 from pinjoint.components.model import Model
-from pinjoint.systems.base import StopReason
+from pinjoint.systems.base import MOST_PARTS, StopReason
 from pinjoint.systems.collision.driven.columns import Need, Real, Whole
 from pinjoint.systems.collision.driven.neighbours import NeighbourList
 from pinjoint.systems.collision.impacts import Impacts
@@ -54,9 +54,14 @@ class DrivenCollisions:
         return self.model.clock.steps - first, reason
 
     def land(self, target: float) -> StopReason:
-        """Take a part of the next step, to a time (s): EVENT where an impact ends that step before."""
+        """Take a part of the next step, to a time (s): EVENT where an impact ends that step before.
+
+        It ends earlier where it is hard, as ProgramSteps.land() does.
+        """
         clock, reason = self.model.clock, StopReason.DONE
-        while clock.time < target and reason in (StopReason.DONE, StopReason.REVIEW, StopReason.REST):
+        for _ in range(MOST_PARTS):
+            if clock.time >= target or reason not in (StopReason.DONE, StopReason.REVIEW, StopReason.REST):
+                break
             reason = self._take(1, min(target, clock.time + clock.step_size), landing=True)
         return reason
 

@@ -35,8 +35,8 @@ angle again, and a moment into the force that belongs to it; its mass is J/ℓ²
 
 Constants of every program: D; EPSILON; RATES (something depends on velocity), POWERS (some account gains by the step), LOADS
 (some load varies), STOPS (there are Events, at which runs stop), SHADOW (see judge() in systems/physics/kernels.py),
-CHECK_INTERVAL and REVIEW_INTERVAL (steps); of one that controls its steps also EVENTS (there are Events, or some law of
-rods has branches), COMMITS (something has a history) and those of its integrator.
+CHECK_INTERVAL, REVIEW_INTERVAL and MOST_PARTS (steps); of one that controls its steps also EVENTS (there are Events, or some
+law of rods has branches), COMMITS (something has a history) and those of its integrator.
 
     driven.py        steps among particles that may meet
     steps.py         the loop over steps of every integrator, and when a state is checked

@@ -113,11 +113,14 @@ def drive(
 def take():
     """Take whole steps, or one to Real.END: in parts, where the error asks for that, and counted once all the same.
 
+    One of too many parts is given up, soon if it only shows a moment: where round-off makes event after event, each ends the
+    next part as soon as it begins, and there may be more of them than anybody waits for.
     How old a run of fixed steps is, by which it is checked, stays the same: impacts do not make it a new one.
     """
     end = real[Real.END]
     until = real[Real.UNTIL] if alone else (real[Real.BY] if end == math.inf else end)
-    wanted = whole[Whole.WANTED] if alone else (whole[Whole.STEPS] if end == math.inf else REVIEW_INTERVAL)
+    most = MOST_PARTS if whole[Whole.LANDING] else REVIEW_INTERVAL
+    wanted = whole[Whole.WANTED] if alone else (whole[Whole.STEPS] if end == math.inf else most)
     longest = limit if whole[Whole.CHOSEN] == 0 else min(limit, real[Real.HELD_LIMIT])
     ended = StopReason.DONE.value
     before = whole[Whole.TOTAL]
@@ -152,6 +155,9 @@ def take():
             whole[Whole.SINCE] = total + taken - age
         goes_on = ended == StopReason.DONE or ended == StopReason.REVIEW or ended == StopReason.REST
         if alone or end == math.inf or now >= end or not goes_on:
+            break
+        if whole[Whole.TOTAL] - before >= most:
+            ended = StopReason.UNRESOLVED.value
             break
     if not alone and end < math.inf:
         further = max(whole[Whole.TOTAL] - before - 1, 0)

@@ -287,3 +287,18 @@ def test_a_damaged_departure_is_refused_by_name() -> None:
         made["state"]["departure"][key] = value
         with pytest.raises(ModelError, match=rf"state\.departure\.{key}"):
             parse(made)
+
+
+@pytest.mark.parametrize("size", [{}, {"radius": 0.1}], ids=["alone", "beside a disc"])
+def test_a_moment_that_too_many_parts_of_a_step_lead_to_is_not_shown(size: dict[str, float]) -> None:
+    """The step is a million times as long as what happens allows, which shows once it is begun."""
+    made = oscillator(3e6, force=10.0, **size)
+    made["particles"].append(particle("C", 5.0, 0.0, mass=1.0, **size))
+    made |= {"settings": {"integrator": "dop853"}, "state": {"time": 0.0, "step_size": 1.0, "steps": 0}}
+    looked_at, left_alone = Session.open(made), Session.open(made)
+    looked_at.simulation.advance(0)
+    assert not looked_at.simulation.show(0.5)
+    for session in (looked_at, left_alone):
+        session.step(3)
+    assert 0.0 < looked_at.time < 1e-3
+    _assert_same(left_alone, looked_at)
