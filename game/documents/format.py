@@ -94,20 +94,16 @@ def upgraded(document: Mapping[str, Any]) -> Mapping[str, Any]:
     """
     stated = document.get(MODS, {})
     _check(stated)
-    waiting = [
-        name
-        for name in EXTENSIONS.upgrades
-        if _is_older(stated.get(name, ""), EXTENSIONS.versions.get(name, ""))
-    ]
+    versions = EXTENSIONS.versions
+    older = [name for name in EXTENSIONS.upgrades if _is_older(stated.get(name, ""), versions.get(name, ""))]
+    present = mods_in(document) if older else ()
+    waiting = [name for name in older if name in present]
     if not waiting:
         return document
-    present = mods_in(document)
-    made: dict[str, Any] | None = None
+    made = copy.deepcopy(dict(document))
     for name in waiting:
-        if name in present:
-            made = copy.deepcopy(dict(document)) if made is None else made
-            EXTENSIONS.upgrades[name](made, stated.get(name, ""))
-    return document if made is None else made
+        EXTENSIONS.upgrades[name](made, stated.get(name, ""))
+    return made
 
 
 def mods_in(document: Mapping[str, Any]) -> set[str]:
