@@ -311,6 +311,7 @@ def test_a_saved_run_goes_on_bit_for_bit() -> None:
     for session in (first, second):
         session.run(time=0.5)
     assert first.particles.displacement.tobytes() == second.particles.displacement.tobytes()
+    assert first.particles.velocity.tobytes() == second.particles.velocity.tobytes()
     assert len(second.impacts) > 0
 
 

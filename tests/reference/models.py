@@ -1,6 +1,7 @@
 """Small model dicts with known answers. Lengths in m, forces in kN, masses in kg."""
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,9 @@ import numpy as np
 from tests.reference.elements import Document, Model
 
 Pair = tuple[float, float]
+
+CLAMPED: Document = {"fixed": [True, True], "fixed_rotation": True}
+PINNED: Document = {"fixed": [True, True]}
 
 
 def model(particles: list[Document], rods: list[Document], **sections: Any) -> Model:
@@ -23,6 +27,15 @@ def particle(name: str, x: float, y: float, **properties: Any) -> Document:
 def rod(start: str, end: str, **properties: Any) -> Document:
     """Return a rod that is named by its two ends."""
     return {"name": start + end, "between": [start, end]} | properties
+
+
+def line(places: Iterable[Pair], first: Document, last: Document, **properties: Any) -> Model:
+    """Return particles P0, P1, … at these places, the first and the last with more facts, on rods R0, R1, … in a row."""
+    particles = [particle(f"P{i}", *place) for i, place in enumerate(places)]
+    particles[0] |= first
+    particles[-1] |= last
+    rods = [rod(f"P{i}", f"P{i + 1}", name=f"R{i}", **properties) for i in range(len(particles) - 1)]
+    return model(particles, rods)
 
 
 def triangle(force: Pair = (120, -160), **properties: Any) -> Model:

@@ -18,11 +18,9 @@ from pinjoint.documents.models import parse
 from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.theory import linear
-from tests.reference.models import model
+from tests.reference.models import CLAMPED, PINNED, line, model, particle, rod
 
 EI, LENGTH = 1000.0, 10.0
-CLAMPED: dict[str, Any] = {"fixed": [True, True], "fixed_rotation": True}
-PINNED: dict[str, Any] = {"fixed": [True, True]}
 HEADS: dict[str, dict[str, Any]] = {
     "free": {},
     "pinned": {"fixed": [True, False]},
@@ -30,16 +28,11 @@ HEADS: dict[str, dict[str, Any]] = {
 }
 
 
-def column(parts: int, foot: dict[str, Any], head: dict[str, Any], **rod: Any) -> dict[str, Any]:
+def column(parts: int, foot: dict[str, Any], head: dict[str, Any], **facts: Any) -> dict[str, Any]:
     """An upright column of equal rods; what its head has besides."""
-    particles: list[dict[str, Any]] = [
-        {"name": f"P{i}", "position": [0.0, LENGTH * i / parts]} for i in range(parts + 1)
-    ]
-    particles[0] |= foot
-    particles[-1] |= {"force": [0.0, -1.0], **head}
-    stiff = {"stiffness": 1e8, "bending_stiffness": EI, "density": 0.0, **rod}
-    rods = [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **stiff} for i in range(parts)]
-    return model(particles, rods)
+    places = [(0.0, LENGTH * i / parts) for i in range(parts + 1)]
+    stiff = {"stiffness": 1e8, "bending_stiffness": EI, "density": 0.0, **facts}
+    return line(places, foot, {"force": [0.0, -1.0], **head}, **stiff)
 
 
 # tan u = u of the column that is clamped and pinned
@@ -92,8 +85,8 @@ def test_weight_acts_in_full_and_does_not_grow() -> None:
     light = column(4, CLAMPED, HEADS["free"])
     critical = Buckling.of(parse(light)).factors[0]
     heavy = column(4, CLAMPED, HEADS["free"])
-    for particle in heavy["particles"]:
-        particle["mass"] = 1000.0 if particle["name"] == "P4" else 1e-9
+    for each in heavy["particles"]:
+        each["mass"] = 1000.0 if each["name"] == "P4" else 1e-9
     heavy["environment"] = {"acceleration": [0.0, -0.5 * critical]}
     found = Buckling.of(parse(heavy))
     assert found.factors[0] == pytest.approx(0.5 * critical, rel=1e-9)
@@ -183,23 +176,19 @@ def textbook(made: Model) -> float:
 def test_random_frames_and_trusses_against_textbook_matrices(number: int) -> None:
     lot = np.random.default_rng([91, number])
     particles = [
-        {
-            "name": f"P{i}",
-            "position": [2.0 * (i // 2) + lot.uniform(-0.3, 0.3), 3.0 * (i % 2) + lot.uniform(-0.3, 0.3)],
-            "force": lot.normal(0.0, 10.0, 2).tolist(),
-            **((CLAMPED if i else PINNED) if i in (0, 1) else {}),
-        }
+        particle(
+            f"P{i}",
+            2.0 * (i // 2) + lot.uniform(-0.3, 0.3),
+            3.0 * (i % 2) + lot.uniform(-0.3, 0.3),
+            force=lot.normal(0.0, 10.0, 2).tolist(),
+            **({0: PINNED, 1: CLAMPED}.get(i, {})),
+        )
         for i in range(8)
     ]
     pairs = [(i, j) for i in range(8) for j in range(i + 1, 8) if j - i <= 2 or (j - i == 3 and i % 2)]
     bends = lot.random(len(pairs)) < (0.6 if number < 4 else 0.0)
     rods = [
-        {
-            "name": f"R{i}{j}",
-            "between": [f"P{i}", f"P{j}"],
-            "stiffness": 1e5,
-            "bending_stiffness": float(lot.uniform(20.0, 400.0)) if bent else 0.0,
-        }
+        rod(f"P{i}", f"P{j}", stiffness=1e5, bending_stiffness=float(lot.uniform(20.0, 400.0)) if bent else 0.0)
         for (i, j), bent in zip(pairs, bends.tolist(), strict=True)
     ]
     made = parse(model(particles, rods))
@@ -208,18 +197,13 @@ def test_random_frames_and_trusses_against_textbook_matrices(number: int) -> Non
 
 def test_a_vierendeel_girder_gives_way_in_its_upper_chord() -> None:
     bays = 4
-    particles: list[dict[str, Any]] = [
-        {"name": f"{side}{i}", "position": [3.0 * i, 2.0 * (side == "U")]}
-        for i in range(bays + 1)
-        for side in "LU"
-    ]
+    particles = [particle(f"{side}{i}", 3.0 * i, 2.0 * (side == "U")) for i in range(bays + 1) for side in "LU"]
     particles[0] |= PINNED
     particles[2 * bays] |= {"fixed": [False, True]}
     particles[2 * (bays // 2) + 1]["force"] = [0.0, -10.0]
     pairs = [(f"{side}{i}", f"{side}{i + 1}") for side in "LU" for i in range(bays)]
     pairs += [(f"L{i}", f"U{i}") for i in range(bays + 1)]
-    facts = {"stiffness": 2e5, "bending_stiffness": 500.0}
-    rods = [{"name": a + b, "between": [a, b], **facts} for a, b in pairs]
+    rods = [rod(*ends, stiffness=2e5, bending_stiffness=500.0) for ends in pairs]
     made = parse(model(particles, rods))
     found = Buckling.of(made)
     assert found.factors[0] == pytest.approx(textbook(made), rel=1e-9)
@@ -251,10 +235,10 @@ def test_tension_holds_a_mechanism_beside_a_column() -> None:
     """A bar that hangs, loaded, beside the column: the column's load remains the answer."""
     document = column(4, CLAMPED, HEADS["free"])
     document["particles"] += [
-        {"name": "top", "position": [3.0, 9.0], "fixed": [True, True]},
-        {"name": "bob", "position": [3.0, 5.0], "force": [0.0, -1.0]},
+        particle("top", 3.0, 9.0, **PINNED),
+        particle("bob", 3.0, 5.0, force=[0.0, -1.0]),
     ]
-    document["rods"].append({"name": "hanger", "between": ["top", "bob"], "stiffness": 1e5})
+    document["rods"].append(rod("top", "bob", stiffness=1e5))
     critical = (math.pi / 2 / LENGTH) ** 2 * EI
     assert Buckling.of(parse(document)).factors[0] == pytest.approx(critical * (1 + 3.28e-5), rel=1e-6)
 
@@ -299,14 +283,11 @@ def test_what_round_off_alone_resists_has_no_answer() -> None:
 def test_notes_name_struts_and_strains() -> None:
     document = model(
         [
-            {"name": "A", "position": [0.0, 0.0], "fixed": [True, True]},
-            {"name": "B", "position": [3.0, 4.0], "force": [0.0, -10.0]},
-            {"name": "C", "position": [6.0, 0.0], "fixed": [True, True]},
+            particle("A", 0.0, 0.0, **PINNED),
+            particle("B", 3.0, 4.0, force=[0.0, -10.0]),
+            particle("C", 6.0, 0.0, **PINNED),
         ],
-        [
-            {"name": "AB", "between": ["A", "B"], "bending_stiffness": 100.0, "hinged": [True, True]},
-            {"name": "BC", "between": ["B", "C"]},
-        ],
+        [rod("A", "B", bending_stiffness=100.0, hinged=[True, True]), rod("B", "C")],
     )
     found = Buckling.of(parse(document))
     assert "is shortened by" in found.notes[0]
@@ -355,18 +336,14 @@ def test_the_command_says_why_there_is_no_factor(capsys: pytest.CaptureFixture[s
 def test_few_modes_of_many_unknowns_are_found() -> None:
     """A hanging net of bars with one that is pushed: beside few critical factors, nearly all eigenvalues are 0."""
     side = 9
-    particles: list[dict[str, Any]] = [
-        {
-            "name": f"{i}.{j}",
-            "position": [i, j],
-            **(PINNED if j == side - 1 else {"force": [0.0, -1.0]}),
-        }
+    particles = [
+        particle(f"{i}.{j}", i, j, **(PINNED if j == side - 1 else {"force": [0.0, -1.0]}))
         for i in range(side)
         for j in range(side)
     ]
     steps = ((1, 0), (0, 1), (1, 1))
     rods = [
-        {"name": f"{i}.{j} {a}{b}", "between": [f"{i}.{j}", f"{i + a}.{j + b}"]}
+        rod(f"{i}.{j}", f"{i + a}.{j + b}")
         for i in range(side)
         for j in range(side)
         for a, b in steps
@@ -374,8 +351,8 @@ def test_few_modes_of_many_unknowns_are_found() -> None:
     ]
     pulled = Buckling.of(parse(model(particles, rods)))
     assert pulled.message.startswith("The forces and loads compress no rod")
-    particles.append({"name": "Q", "position": [-2.0, side - 1.0], **PINNED})
-    rods.append({"name": "QP", "between": ["Q", f"0.{side - 2}"]})
+    particles.append(particle("Q", -2.0, side - 1.0, **PINNED))
+    rods.append(rod("Q", f"0.{side - 2}"))
     made = parse(model(particles, rods))
     found = Buckling.of(made, count=3)
     assert found.factors[0] == pytest.approx(textbook(made), rel=1e-6)

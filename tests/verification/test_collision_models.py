@@ -8,95 +8,50 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
-from pinjoint.components.obstacles import obstacles
-from pinjoint.documents import models
 from pinjoint.included.collisions import panels
-from pinjoint.systems.collision.columns import Reason
-from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES, Discs
-from pinjoint.systems.program.compiler import SMALL
-from tests.reference import closed_forms
-from tests.reference.collisions import Impacts
 from tests.reference.scenes_of_discs import deepest
 
 
-def discs_of(name: str) -> Discs:
-    """The particles of a bundled model without rods, as discs that machine code moves, as a window would soon have it."""
-    model = models.load(name)
-    particles = model.particles
-    for module in (EVENTS, HORIZONS, PILES) if particles.count > SMALL else ():
-        module.load()
-    return Discs(
-        particles.position,
-        particles.velocity,
-        particles.radius,
-        np.where(particles.fixed, 0.0, 1 / particles.mass[:, None]),
-        acceleration=np.array(model.environment.acceleration),
-        restitution=model.settings.restitution,
-        obstacles=obstacles(model),
-    )
-
-
-def velocity_at(discs: Discs, time: float) -> np.ndarray:
-    """Velocities at a time to which the discs fly first."""
-    assert discs.advance(time)[0] is Reason.DONE
-    return discs.state_at(time)[1]
+def velocity_at(session: Session, time: float) -> np.ndarray:
+    """Velocities at a time to which the particles move first."""
+    if time > session.time:
+        session.run(time=time - session.time)
+    return session.particles.velocity.copy()
 
 
 def test_newtons_cradle_passes_one_ball_on_and_gets_it_back() -> None:
     """The blow arrives after 0.45 m; the last ball is on its way from then on, and back, for ever."""
-    discs = discs_of("newtons_cradle")
-    assert velocity_at(discs, 0.8)[:5, 0] == pytest.approx([0, 0, 0, 0, 1], abs=1e-14)
-    assert sorted(np.abs(velocity_at(discs, 30.0)[:5, 0])) == pytest.approx([0, 0, 0, 0, 1], abs=1e-12)
+    session = Session.open("newtons_cradle")
+    assert velocity_at(session, 0.8)[:5, 0] == pytest.approx([0, 0, 0, 0, 1], abs=1e-14)
+    assert sorted(np.abs(velocity_at(session, 30.0)[:5, 0])) == pytest.approx([0, 0, 0, 0, 1], abs=1e-12)
 
 
 def test_the_break_is_symmetric_and_keeps_its_energy() -> None:
-    discs = discs_of("billiards_break")
-    place = models.load("billiards_break").particles.position[:16]
-    partner = np.hypot(*(place[:, None] - (place * [1, -1] + [0, 1.27])[None]).transpose(2, 0, 1)).argmin(
-        axis=1
-    )
-    velocity = velocity_at(discs, 0.3)[:16]
+    session = Session.open("billiards_break")
+    place = session.particles.position[:16]
+    mirrored = place * [1, -1] + [0, 1.27]
+    partner = np.hypot(*(place[:, None] - mirrored[None]).transpose(2, 0, 1)).argmin(axis=1)
+    velocity = velocity_at(session, 0.3)[:16]
     assert np.abs(velocity - velocity[partner] * [1, -1]).max() <= 1e-9
     assert (np.hypot(*velocity.T) > 0.01).sum() >= 10
     for time in (0.3, 2.0):
-        assert (velocity_at(discs, time)[:16] ** 2).sum() == pytest.approx(36, rel=1e-12)
+        assert (velocity_at(session, time)[:16] ** 2).sum() == pytest.approx(36, rel=1e-12)
 
 
-def test_the_digits_of_pi_are_counted() -> None:
-    discs = discs_of("galperin_pi")
-    velocity_at(discs, 100.0)
-    assert discs.impacts == closed_forms.galperin_contacts(2) == 314
+def test_the_gas_relaxes_to_rayleighs_mean_keeps_its_energy_and_presses_on_its_walls() -> None:
+    """(√π/2) v₀, standard error √((4 − π)/4n) of a moment; here of eight moments.
 
-
-def test_the_gas_relaxes_to_rayleighs_mean_and_keeps_its_energy() -> None:
-    """(√π/2) v₀, standard error √((4 − π)/4n) of a moment; here of eight moments."""
-    discs = discs_of("hard_disc_gas")
-    energy = (velocity_at(discs, 0.0) ** 2).sum()
-    means = [np.hypot(*velocity_at(discs, time)[:225].T).mean() for time in range(3, 11)]
+    p = (N/A) k T (1 + …) for discs that cover η = 0.126 of the box: Z = (1 + η²/8)/(1 − η)² (Henderson, 1975).
+    """
+    session = Session.open("hard_disc_gas")
+    energy = (velocity_at(session, 0.0) ** 2).sum()
+    means = [np.hypot(*velocity_at(session, time)[:225].T).mean() for time in range(3, 11)]
     assert np.mean(means) == pytest.approx(math.sqrt(math.pi) / 2, abs=2 * math.sqrt((4 - math.pi) / 4 / 225))
-    assert (velocity_at(discs, 10.0) ** 2).sum() == pytest.approx(energy, rel=1e-12)
-
-
-def test_the_pile_comes_to_rest_without_sinking_in() -> None:
-    discs = discs_of("pile")
-    velocity_at(discs, 10.0)
-    assert discs.at_rest
-    particles = models.load("pile").particles
-    place = particles.position + discs.state_at(10.0)[0]
-    assert deepest(place, particles.radius, ~particles.fixed.all(axis=1)) <= 1e-6 * particles.radius.min()
-    assert place.min() >= particles.radius.min() * (1 - 1e-6)
-
-
-def test_the_gas_presses_on_its_walls() -> None:
-    """p = (N/A) k T (1 + …) for discs that cover η = 0.126 of the box: Z = (1 + η²/8)/(1 − η)² (Henderson, 1975)."""
-    model = models.load("hard_disc_gas")
-    discs = discs_of("hard_disc_gas")
-    discs.advance(1.0)
-    impacts = Impacts(discs.advance(21.0)[1])
-    on_walls = impacts.pairs[:, 1] >= model.particles.count
+    assert (velocity_at(session, 21.0) ** 2).sum() == pytest.approx(energy, rel=1e-12)
+    impacts = session.impacts
+    on_walls = (impacts.second >= session.particles.count) & (impacts.time > 1.0)
     pressure = impacts.impulse[on_walls].sum() / 20 / 12
-    radius = model.particles.radius[0]
-    filled = 225 * math.pi * radius**2 / 9
+    filled = 225 * math.pi * session.particles.radius[0] ** 2 / 9
     expected = 225 / 9 * 0.5 * (1 + filled**2 / 8) / (1 - filled) ** 2
     assert pressure == pytest.approx(expected, rel=0.05)
 
@@ -113,9 +68,6 @@ def test_the_ball_hops_down_the_stairs() -> None:
     assert (x, y) == pytest.approx(
         (3.4 - radius, -0.15 + radius * math.tan(slope) + radius / math.cos(slope)), abs=1e-8
     )
-
-
-# --- in the program -------------------------------------------------------------------------------------------
 
 
 def test_the_digits_of_pi_are_counted_on_screen() -> None:
@@ -137,10 +89,14 @@ def test_the_ball_strikes_the_truss_by_newtons_law() -> None:
     assert abs(session.energy.imbalance) <= 1e-3 * 40 * gravity * height
 
 
-def test_the_pile_is_told_to_be_at_rest() -> None:
+def test_the_pile_comes_to_rest_without_sinking_in() -> None:
     session = Session.open("pile")
     assert session.run(until="rest") == "at rest"
-    assert not session.particles.velocity.any()
+    particles = session.particles
+    assert not particles.velocity.any()
+    place = particles.position + particles.displacement
+    assert deepest(place, particles.radius, ~particles.fixed.all(axis=1)) <= 1e-6 * particles.radius.min()
+    assert place.min() >= particles.radius.min() * (1 - 1e-6)
 
 
 ROOT = 3.0**0.5  # of offset centres: the line of centres is at 30° to the motion

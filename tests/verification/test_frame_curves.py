@@ -15,36 +15,26 @@ from pinjoint.documents.models import parse
 from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.path import Curve, Goal
 from tests.reference.closed_forms import von_mises_force
-from tests.reference.models import model, von_mises_truss
-from tests.verification.test_buckling import CLAMPED, EI, HEADS, LENGTH, PINNED, column
+from tests.reference.models import CLAMPED, PINNED, line, von_mises_truss
+from tests.verification.test_buckling import EI, HEADS, LENGTH, column
 
 
 def williams(parts: int) -> Model:
     """Williams' toggle (in, lb): clamped feet, shallow, of so many rods for each half; 1 lb down on its crown."""
     half, rise = 12.943, 0.386
-    particles: list[dict[str, Any]] = [
-        {"name": f"P{i}", "position": [half * i / parts, rise * (1 - abs(i - parts) / parts)]}
-        for i in range(2 * parts + 1)
-    ]
-    particles[0] |= CLAMPED
-    particles[-1] |= CLAMPED
-    particles[parts]["force"] = [0.0, -1.0]
-    stiff = {"stiffness": 1.885e6, "bending_stiffness": 9.27e3}
-    rods = [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **stiff} for i in range(2 * parts)]
-    return parse(model(particles, rods))
+    places = [(half * i / parts, rise * (1 - abs(i - parts) / parts)) for i in range(2 * parts + 1)]
+    document = line(places, CLAMPED, CLAMPED, stiffness=1.885e6, bending_stiffness=9.27e3)
+    document["particles"][parts]["force"] = [0.0, -1.0]
+    return parse(document)
 
 
 def lee(parts: int) -> Model:
     """Lee's frame (cm, kN): legs of 120 with pinned feet, 1 kN down on a fifth of the beam; EA = 4320, EI = 1440."""
     places = [(0.0, 120.0 * i / parts) for i in range(parts + 1)]
     places += [(120.0 * i / parts, 120.0) for i in range(1, parts + 1)]
-    particles: list[dict[str, Any]] = [{"name": f"P{i}", "position": list(at)} for i, at in enumerate(places)]
-    particles[0] |= PINNED
-    particles[-1] |= PINNED
-    particles[parts + parts // 5]["force"] = [0.0, -1.0]
-    stiff = {"stiffness": 4320.0, "bending_stiffness": 1440.0}
-    rods = [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **stiff} for i in range(2 * parts)]
-    return parse(model(particles, rods))
+    document = line(places, PINNED, PINNED, stiffness=4320.0, bending_stiffness=1440.0)
+    document["particles"][parts + parts // 5]["force"] = [0.0, -1.0]
+    return parse(document)
 
 
 def test_williams_toggle_snaps_through() -> None:

@@ -18,7 +18,7 @@ from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import StaticState
 from pinjoint.systems.statics.theory import Indeterminacy, linear
 from tests.reference import frames
-from tests.reference.models import model
+from tests.reference.models import CLAMPED, PINNED, line, model, particle, rod
 from tests.verification.test_frame_theory import random_frame
 
 EI, LENGTH = 1000.0, 10.0
@@ -26,14 +26,9 @@ EI, LENGTH = 1000.0, 10.0
 
 def cantilever(parts: int, tip: dict[str, Any], slenderness: float = 1e4, **facts: Any) -> Model:
     """A cantilever along x of equal rods, clamped at its left end; slenderness: EA L²/EI."""
-    particles: list[dict[str, Any]] = [
-        {"name": f"P{i}", "position": [LENGTH * i / parts, 0.0]} for i in range(parts + 1)
-    ]
-    particles[0] |= {"fixed": [True, True], "fixed_rotation": True}
-    particles[-1] |= tip
+    places = [(LENGTH * i / parts, 0.0) for i in range(parts + 1)]
     stiff = {"stiffness": EI * slenderness / LENGTH**2, "bending_stiffness": EI, **facts}
-    rods = [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **stiff} for i in range(parts)]
-    return parse(model(particles, rods) | {"settings": {"collisions": False}})
+    return parse(line(places, CLAMPED, tip, **stiff) | {"settings": {"collisions": False}})
 
 
 def held_by_reference(loaded: Model, state: StaticState, within: float) -> None:
@@ -66,25 +61,21 @@ def test_random_frames_are_in_balance_by_the_slow_reference(seed: int) -> None:
 def test_settled_is_where_the_energy_is_least(number: int) -> None:
     """A portal with a hinge, a bar, warmth, a settlement, and loads under which it moves far."""
     lot = np.random.default_rng([73, number])
-    clamp = {"fixed": [True, True], "fixed_rotation": True}
     particles = [
-        {"name": "A", "position": [0.0, 0.0], **clamp, "rotation": float(lot.normal(0.0, 0.02))},
-        {"name": "B", "position": [0.0, 3.0], "force": lot.normal(0.0, 60.0, 2).tolist()},
-        {"name": "C", "position": [4.0, 3.5], "moment": float(lot.normal(0.0, 50.0))},
-        {"name": "D", "position": [4.0, 0.0], **clamp, "displacement": lot.normal(0.0, 0.02, 2).tolist()},
+        particle("A", 0.0, 0.0, **CLAMPED, rotation=float(lot.normal(0.0, 0.02))),
+        particle("B", 0.0, 3.0, force=lot.normal(0.0, 60.0, 2).tolist()),
+        particle("C", 4.0, 3.5, moment=float(lot.normal(0.0, 50.0))),
+        particle("D", 4.0, 0.0, **CLAMPED, displacement=lot.normal(0.0, 0.02, 2).tolist()),
     ]
-    rods: list[dict[str, Any]] = [
-        {"name": "AB", "between": ["A", "B"], "temperature_gradient": 60.0, "temperature_change": 40.0},
-        {"name": "BC", "between": ["B", "C"], "hinged": [number % 2 == 1, False]},
-        {"name": "CD", "between": ["C", "D"]},
+    rods = [
+        rod("A", "B", temperature_gradient=60.0, temperature_change=40.0),
+        rod("B", "C", hinged=[number % 2 == 1, False]),
+        rod("C", "D"),
     ]
-    for rod in rods:
-        rod |= {
-            "stiffness": 2e4,
-            "bending_stiffness": 400.0,
-            "distributed_force": lot.normal(0.0, 8.0, 2).tolist(),
-        }
-    loaded = parse(model(particles, [*rods, {"name": "BD", "between": ["B", "D"], "stiffness": 20.0}]))
+    for member in rods:
+        member |= {"stiffness": 2e4, "bending_stiffness": 400.0}
+        member["distributed_force"] = lot.normal(0.0, 8.0, 2).tolist()
+    loaded = parse(model(particles, [*rods, rod("B", "D", stiffness=20.0)]))
     found = settle(loaded).final
     assert found.status == "equilibrium"
     assert np.abs(found.rotation).max() > 0.01
@@ -136,21 +127,21 @@ def test_braces_that_yield_or_go_slack_beside_members_that_bend(seed: int) -> No
     """Under the load and after unloading to a fifth of it, by the slow reference; no force beyond a strength."""
     lot, document = np.random.default_rng(seed), random_frame(seed)
     document["settings"] = {"collisions": False}
-    for rod in document["rods"]:
-        if rod["bending_stiffness"] == 0.0:
-            rod["tension_only"] = bool(lot.random() < 0.5)
-        rod["tensile_strength"] = float(lot.uniform(15.0, 60.0))
-        if not rod.get("tension_only"):
-            rod["compressive_strength"] = float(lot.uniform(15.0, 60.0))
+    for member in document["rods"]:
+        if member["bending_stiffness"] == 0.0:
+            member["tension_only"] = bool(lot.random() < 0.5)
+        member["tensile_strength"] = float(lot.uniform(15.0, 60.0))
+        if not member.get("tension_only"):
+            member["compressive_strength"] = float(lot.uniform(15.0, 60.0))
     loaded = parse(document)
     found = settle(loaded, (0.5, 0.1)).final
     assume(found.balanced)  # else it collapses; hypothesis fails if too many do
     assert (found.axial_force <= loaded.rods.tension_limit * (1.0 + 1e-9)).all()
     assert (found.axial_force >= -loaded.rods.compression_limit * (1.0 + 1e-9)).all()
-    for particle in loaded.particles:
-        particle.force, particle.moment = tuple(0.1 * f for f in particle.force), 0.1 * particle.moment
-    for rod in loaded.rods:
-        rod.distributed_force = tuple(0.1 * q for q in rod.distributed_force)
+    for node in loaded.particles:
+        node.force, node.moment = tuple(0.1 * f for f in node.force), 0.1 * node.moment
+    for member in loaded.rods:
+        member.distributed_force = tuple(0.1 * q for q in member.distributed_force)
     held_by_reference(loaded, found, 1e-10)
 
 
@@ -172,16 +163,9 @@ def test_a_settled_frame_stays_where_it_is() -> None:
 
 def column(parts: int, force: float, **top: Any) -> Model:
     """A column 4 m high, clamped at its foot, under a force down."""
-    particles: list[dict[str, Any]] = [
-        {"name": f"P{i}", "position": [0.0, 4.0 * i / parts], "radius": 1e-3} for i in range(parts + 1)
-    ]
-    particles[0] |= {"fixed": [True, True], "fixed_rotation": True}
-    particles[-1] |= {"force": [0.0, -force], **top}
-    rods = [
-        {"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], "stiffness": 1e6, "bending_stiffness": EI}
-        for i in range(parts)
-    ]
-    return parse(model(particles, rods))
+    places = [(0.0, 4.0 * i / parts) for i in range(parts + 1)]
+    loaded = {"force": [0.0, -force], **top}
+    return parse(line(places, CLAMPED, loaded, stiffness=1e6, bending_stiffness=EI))
 
 
 @pytest.mark.parametrize(("parts", "error"), [(1, 0.0076), (2, 5.2e-4), (4, 4e-5)])
@@ -206,17 +190,15 @@ def test_a_rod_that_bends_within_itself_is_to_be_divided() -> None:
 
 def test_two_discs_at_the_ends_of_cantilevers_carry_a_ball() -> None:
     """Under half the weight each and under their distributed forces; the moments are those of statics."""
-    clamp = {"fixed": [True, True], "fixed_rotation": True}
-    particles: list[dict[str, Any]] = [
-        {"name": "A", "position": [-2.3, 0.0], **clamp},
-        {"name": "P", "position": [-0.3, 0.0]},
-        {"name": "Q", "position": [0.3, 0.0]},
-        {"name": "B", "position": [2.3, 0.0], **clamp},
-        {"name": "ball", "position": [0.0, 0.6], "force": [0.0, -5.0], "radius": 0.35},
+    particles = [
+        particle("A", -2.3, 0.0, **CLAMPED),
+        particle("P", -0.3, 0.0),
+        particle("Q", 0.3, 0.0),
+        particle("B", 2.3, 0.0, **CLAMPED),
+        particle("ball", 0.0, 0.6, force=[0.0, -5.0], radius=0.35),
     ]
     load = {"bending_stiffness": 3000.0, "stiffness": 1e6, "distributed_force": [0.0, -2.0]}
-    rods: list[dict[str, Any]] = [{"name": name, "between": list(name), **load} for name in ("AP", "QB")]
-    found = settle(parse(model(particles, rods))).final
+    found = settle(parse(model(particles, [rod(*ends, **load) for ends in ("AP", "QB")]))).final
     assert found.status == "equilibrium"
     assert len(found.contacts) == 2
     assert found.reaction[:, 1].sum() == pytest.approx(5.0 + 8.0, rel=1e-9)
@@ -235,11 +217,8 @@ def test_a_long_member_is_no_mechanism(parts: int, slenderness: float) -> None:
 
 def test_a_lever_that_a_moment_turns_round_and_round_is_a_mechanism() -> None:
     """Pinned at one end; its weight balances less than the moment, wherever it is."""
-    particles: list[dict[str, Any]] = [
-        {"name": "A", "position": [0.0, 0.0], "fixed": [True, True]},
-        {"name": "B", "position": [2.0, 0.0], "force": [0.0, -10.0], "moment": 30.0},
-    ]
-    lever = {"name": "AB", "between": ["A", "B"], "stiffness": 1e5, "bending_stiffness": 200.0}
+    particles = [particle("A", 0.0, 0.0, **PINNED), particle("B", 2.0, 0.0, force=[0.0, -10.0], moment=30.0)]
+    lever = rod("A", "B", stiffness=1e5, bending_stiffness=200.0)
     found = settle(parse(model(particles, [lever])))
     assert found.status == "mechanism"
     assert "B" in found.message
@@ -267,21 +246,16 @@ def test_settling_ends_a_motion_where_the_load_alone_leads_to() -> None:
 def test_a_frame_is_held_until_it_snaps() -> None:
     """As a run is told in the window: Williams' toggle just below its limit load, and half-way through."""
     span, rise = 12.943, 0.386
-    clamp = {"fixed": [True, True], "fixed_rotation": True}
-    particles: list[dict[str, Any]] = [
-        {"name": "A", "position": [-span, 0.0], **clamp},
-        {"name": "B", "position": [0.0, rise], "force": [0.0, -0.034]},
-        {"name": "C", "position": [span, 0.0], **clamp},
-    ]
-    stiff = {"stiffness": 1885.0, "bending_stiffness": 9.27}
-    rods: list[dict[str, Any]] = [{"name": name, "between": list(name), **stiff} for name in ("AB", "BC")]
-    toggle = parse(model(particles, rods))
+    places = [(-span, 0.0), (0.0, rise), (span, 0.0)]
+    halves = line(places, CLAMPED, CLAMPED, stiffness=1885.0, bending_stiffness=9.27)
+    halves["particles"][1]["force"] = [0.0, -0.034]
+    toggle = parse(halves)
     assert is_held(toggle, at_first=True)
     below = settle(toggle).final
     assert [event.kind for event in below.events] == ["note"]  # to divide both, for a limit load exact to 1 %
     below.put(toggle)
     assert is_held(toggle)
-    toggle.particles["B"].displacement = (0.0, -0.35)
+    toggle.particles["P1"].displacement = (0.0, -0.35)
     Session(toggle).simulation.programs.compiled.observe()
     assert not is_held(toggle)
     (snap,) = (event for event in settle(toggle, (0.0, 1.2)).events if event.kind == "snap-through")
@@ -295,14 +269,10 @@ def test_a_column_that_leans_ever_further_never_snaps(number: int) -> None:
     lot = np.random.default_rng([89, number])
     parts, length, critical = int(lot.integers(2, 7)), 3.0, math.pi**2 * EI / (4.0 * 3.0**2)
     aside, share = critical * 10.0 ** lot.uniform(-8, -2), lot.uniform(0.9, 2.0)
-    particles: list[dict[str, Any]] = [
-        {"name": f"P{i}", "position": [0.0, length * i / parts]} for i in range(parts + 1)
-    ]
-    particles[0] |= {"fixed": [True, True], "fixed_rotation": True}
-    particles[-1] |= {"force": [aside, -share * critical]}
-    stiff = {"stiffness": 10.0 ** lot.uniform(5, 8), "bending_stiffness": EI}
-    rods = [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **stiff} for i in range(parts)]
-    column = model(particles, rods) | {"settings": {"collisions": False}}
+    places = [(0.0, length * i / parts) for i in range(parts + 1)]
+    pushed = {"force": [aside, -share * critical]}
+    column = line(places, CLAMPED, pushed, stiffness=10.0 ** lot.uniform(5, 8), bending_stiffness=EI)
+    column["settings"] = {"collisions": False}
     at_once, slowly = settle(parse(column)), settle(parse(column), np.linspace(0.0, 1.0, 40).tolist())
     for found in (at_once, slowly):
         assert found.final.balanced
@@ -316,12 +286,8 @@ def test_a_member_between_two_nodes_in_one_place_gives_no_numbers_that_are_none(
     recwarn: pytest.WarningsRecorder,
 ) -> None:
     """1e-300 m is a length, but its inverse has no square."""
-    nodes = [
-        {"name": "A", "position": [0, 0], "fixed": [True, True], "fixed_rotation": True},
-        {"name": "B", "position": [1e-300, 0], "force": [0.0, -1.0]},
-    ]
-    bent = {"name": "AB", "between": ["A", "B"], "rest_length": 1.0, "bending_stiffness": 1.0}
-    found = settle(parse(model(nodes, [bent])))
+    places, loaded = [(0, 0), (1e-300, 0)], {"force": [0.0, -1.0]}
+    found = settle(parse(line(places, CLAMPED, loaded, rest_length=1.0, bending_stiffness=1.0)))
     assert found.status == "limit reached"
     assert not recwarn.list
 

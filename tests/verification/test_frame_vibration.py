@@ -12,8 +12,7 @@ from pinjoint.systems.physics.bending import stiffness_matrix
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.vibration import Vibrations
 from tests.reference import frames
-from tests.reference.models import model
-from tests.verification.test_buckling import CLAMPED, PINNED
+from tests.reference.models import CLAMPED, PINNED, line
 
 LENGTH, EA, EI, DENSITY = 2.0, 3e8, 10.0, 6.15  # so slender that its rotary inertia is nothing
 SUPPORTS: dict[str, tuple[dict[str, Any], dict[str, Any], list[float]]] = {
@@ -25,15 +24,8 @@ SUPPORTS: dict[str, tuple[dict[str, Any], dict[str, Any], list[float]]] = {
 
 
 def beam(parts: int, first: dict[str, Any], last: dict[str, Any]) -> Model:
-    particles: list[dict[str, Any]] = [
-        {"name": f"P{i}", "position": [LENGTH * i / parts, 0.0]} for i in range(parts + 1)
-    ]
-    particles[0] |= first
-    particles[-1] |= last
-    rod = {"stiffness": EA, "bending_stiffness": EI, "density": DENSITY}
-    return parse(
-        model(particles, [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **rod} for i in range(parts)])
-    )
+    places = [(LENGTH * i / parts, 0.0) for i in range(parts + 1)]
+    return parse(line(places, first, last, stiffness=EA, bending_stiffness=EI, density=DENSITY))
 
 
 @pytest.mark.parametrize("name", SUPPORTS)

@@ -10,24 +10,17 @@ from pinjoint import Session
 from pinjoint.documents.document import parse
 from pinjoint.systems.physics.bending import stiffness_matrix
 from pinjoint.systems.physics.spectrum import spectrum
-from tests.reference import frames, models
+from tests.reference import frames
+from tests.reference.models import CLAMPED, PINNED, line, rod
 
 EI, LENGTH, LOAD = 100.0, 2.0, -1e-4
-
-
-def model(particles: list[dict[str, Any]], rods: list[dict[str, Any]], **settings: Any) -> dict[str, Any]:
-    return models.model(particles, rods, settings={"collisions": False, **settings})
+NO_COLLISIONS = {"settings": {"collisions": False}}
 
 
 def cantilever(count: int, slenderness: float) -> dict[str, Any]:
     """A cantilever of length 1 m and EA = 10⁵ kN, of so many rods; slenderness: length/radius of gyration."""
-    particles: list[dict[str, Any]] = [
-        {"name": f"P{i}", "position": [i / count, 0.0]} for i in range(count + 1)
-    ]
-    particles[0] |= {"fixed": [True, True], "fixed_rotation": True}
-    rod = {"stiffness": 1e5, "bending_stiffness": 1e5 / slenderness**2, "damping": 0.0}
-    rods = [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **rod} for i in range(count)]
-    return model(particles, rods)
+    stiff = {"stiffness": 1e5, "bending_stiffness": 1e5 / slenderness**2, "damping": 0.0}
+    return line([(i / count, 0.0) for i in range(count + 1)], CLAMPED, {}, **stiff) | NO_COLLISIONS
 
 
 @pytest.mark.parametrize(
@@ -75,15 +68,10 @@ def test_the_highest_frequency_is_bounded(number: int) -> None:
     assert spectrum(made, made.rods.axial_force).frequency >= 0.97 * math.sqrt(highest)
 
 
-def beam(**rod: Any) -> dict[str, Any]:
+def beam(**facts: Any) -> dict[str, Any]:
     """One rod, clamped at both ends but for hinges, under a small distributed force."""
-    held = {"fixed": [True, True], "fixed_rotation": True}
-    particles = [
-        {"name": "A", "position": [0.0, 0.0], **held},
-        {"name": "B", "position": [LENGTH, 0.0], **held},
-    ]
-    facts = {"stiffness": 1e5, "bending_stiffness": EI, "distributed_force": [0.0, LOAD], **rod}
-    return model(particles, [{"name": "AB", "between": ["A", "B"], **facts}])
+    stiff = {"stiffness": 1e5, "bending_stiffness": EI, "distributed_force": [0.0, LOAD], **facts}
+    return line([(0.0, 0.0), (LENGTH, 0.0)], CLAMPED, CLAMPED, **stiff) | NO_COLLISIONS
 
 
 @pytest.mark.parametrize(
@@ -99,10 +87,10 @@ def test_a_clamped_beam(hinged: Any, moments: Any, shears: Any, turned: Any) -> 
     """Moments of qL², shears of qL, rotations of qL³/EI (q downwards positive): textbook."""
     session = Session(parse(beam(hinged=hinged)))
     session.run(steps=1)
-    rod = session.rods["AB"]
-    assert rod.bending_moment == pytest.approx(np.multiply(moments, -LOAD * LENGTH**2), abs=1e-12)
-    assert rod.shear == pytest.approx(np.multiply(shears, -LOAD * LENGTH), abs=1e-12)
-    assert rod.end_rotation == pytest.approx(np.multiply(turned, -LOAD * LENGTH**3 / EI), abs=1e-12)
+    member = session.rods["R0"]
+    assert member.bending_moment == pytest.approx(np.multiply(moments, -LOAD * LENGTH**2), abs=1e-12)
+    assert member.shear == pytest.approx(np.multiply(shears, -LOAD * LENGTH), abs=1e-12)
+    assert member.end_rotation == pytest.approx(np.multiply(turned, -LOAD * LENGTH**3 / EI), abs=1e-12)
     reactions = session.model.particles.reaction_moment
     assert reactions == pytest.approx(np.multiply(moments, -LOAD * LENGTH**2) * [-1.0, 1.0], abs=1e-12)
 
@@ -111,25 +99,18 @@ def test_warmth_on_one_side_bends_a_clamped_beam() -> None:
     """M = EI α ΔT/h at both ends; the warmer side, the left one, is pressed: the right one is in tension."""
     session = Session(parse(beam(distributed_force=[0.0, 0.0], temperature_gradient=20.0)))
     session.run(steps=1)
-    assert session.rods["AB"].bending_moment == pytest.approx([EI * 1.2e-5 * 20.0] * 2, rel=1e-12)
+    assert session.rods["R0"].bending_moment == pytest.approx([EI * 1.2e-5 * 20.0] * 2, rel=1e-12)
 
 
 def test_at_rest_the_energy_is_least() -> None:
     """A frame with hinges, bars, distributed forces and warmth comes to rest where the slow reference has no force."""
-    particles: list[dict[str, Any]] = [
-        {"name": "A", "position": [0.0, 0.0], "fixed": [True, True], "fixed_rotation": True},
-        {"name": "B", "position": [0.0, 3.0]},
-        {"name": "C", "position": [4.0, 3.0], "force": [10.0, -20.0], "moment": 2.0},
-        {"name": "D", "position": [4.0, 0.0], "fixed": [True, True], "rotation": 0.0},
-    ]
-    rod = {"bending_stiffness": 4000.0, "damping": 2000.0, "stiffness": 2e4}
-    rods = [
-        {"name": "AB", "between": ["A", "B"], **rod, "temperature_gradient": 40.0},
-        {"name": "BC", "between": ["B", "C"], **rod, "hinged": [False, True], "distributed_force": [0.0, -5.0]},
-        {"name": "CD", "between": ["C", "D"], **rod},
-        {"name": "AC", "between": ["A", "C"], "stiffness": 50.0},
-    ]
-    document = model(particles, rods, integrator="esdirk4")
+    stiff = {"bending_stiffness": 4000.0, "damping": 2000.0, "stiffness": 2e4}
+    document = line([(0.0, 0.0), (0.0, 3.0), (4.0, 3.0), (4.0, 0.0)], CLAMPED, PINNED, **stiff)
+    document["particles"][2] |= {"force": [10.0, -20.0], "moment": 2.0}
+    document["rods"][0] |= {"temperature_gradient": 40.0}
+    document["rods"][1] |= {"hinged": [False, True], "distributed_force": [0.0, -5.0]}
+    document["rods"].append(rod("P0", "P2", stiffness=50.0))
+    document["settings"] = {"collisions": False, "integrator": "esdirk4"}
     session = Session(parse(document | {"environment": {"drag": 20.0}}))
     session.run(until="rest")
     force, moment = frames.forces(session.model)
@@ -147,13 +128,12 @@ def test_a_rolling_beam_keeps_momentum_and_energy() -> None:
     """A free beam spins many turns: angular momentum Σ m r × v + J ω and energy stay; rotations are not wrapped."""
     count, spin = 4, 200.0
     place = np.linspace(-1.0, 1.0, count + 1)
-    particles = [
-        {"name": f"P{i}", "position": [x, 0.0], "velocity": [0.0, spin * x], "angular_velocity": spin}
-        for i, x in enumerate(place.tolist())
-    ]
-    rod = {"stiffness": 2e4, "bending_stiffness": 20.0, "damping": 0.0}
-    rods = [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **rod} for i in range(count)]
-    session = Session(parse(model(particles, rods, integrator="dop853")))
+    stiff = {"stiffness": 2e4, "bending_stiffness": 20.0, "damping": 0.0}
+    document = line([(x, 0.0) for x in place.tolist()], {}, {}, **stiff)
+    for particle in document["particles"]:
+        particle |= {"velocity": [0.0, spin * particle["position"][0]], "angular_velocity": spin}
+    document["settings"] = {"collisions": False, "integrator": "dop853"}
+    session = Session(parse(document))
 
     def momentum() -> float:
         p = session.model.particles

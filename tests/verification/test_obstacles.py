@@ -320,26 +320,3 @@ def test_the_restitution_of_a_wall_is_its_own() -> None:
     discs, impacts = fly([(1, 0), (2, 0)], [(-1, 0), (-1, 0)], wall, 1.8, restitution=0.5)
     assert impacts.loss == pytest.approx([0.5 * (1 - 0.25**2), 0.25 * (1 - 0.5**2) * 1.25**2])
     assert discs.state_at(1.8)[1].sum() == pytest.approx(-0.75)
-
-
-def test_a_run_that_is_resumed_goes_on_bit_for_bit() -> None:
-    start = [(0.2, 0.3), (0.5, 0.7), (0.8, 0.3)]
-    velocity, walls = [(1, 0.3), (-0.7, 0.2), (0.1, -1)], box(1.0, 1.0, restitution=0.9)
-    whole, _ = fly(start, velocity, walls, 3.0, pull=GRAVITY, restitution=0.9)
-    half, _ = fly(start, velocity, walls, 1.5, pull=GRAVITY, restitution=0.9)
-    moved, speeds = half.state_at(1.5)
-    resumed = Discs(
-        start,
-        speeds,
-        np.full(3, RADIUS),
-        np.ones((3, 2)),
-        displacement=moved,
-        acceleration=np.tile([0.0, -GRAVITY], (3, 1)),
-        restitution=0.9,
-        obstacles=walls,
-        time=1.5,
-    )
-    resumed.resume(half.state())
-    resumed.advance(3.0)
-    for first, second in zip(whole.state_at(3.0), resumed.state_at(3.0), strict=True):
-        assert first.tobytes() == second.tobytes()

@@ -1,6 +1,7 @@
 """Collisions in the program: events, energy, state and what a person is told, through Session."""
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -102,23 +103,20 @@ def test_momentum_is_kept() -> None:
     np.testing.assert_allclose(momentum(session), before, atol=1e-12)
 
 
-def test_a_particle_held_in_y_answers_with_its_mass_along_x_only() -> None:
-    """Line of centres at 45°: compliance n·(W₁ + W₂)·n = 1 + ½, impulse = 2 v n_x / compliance."""
-    half = 0.1 / np.sqrt(2.0)
-    document = model(
-        [
-            {"position": [0.0, 0.0], "velocity": [1.0, 0.0]},
-            {"position": [1.0 + half, half], "fixed": [False, True]},
-        ]
-    )
-    session = Session.open(document)
-    session.run(time=2.0)
-    impulse = 2.0 * np.sqrt(0.5) / 1.5
+@pytest.mark.parametrize("restitution", [0.0, 0.3, 1.0])
+@pytest.mark.parametrize("angle", [0.2, 0.7, 1.2])
+def test_a_particle_held_in_y_answers_with_its_mass_along_x_only(angle: float, restitution: float) -> None:
+    """Its inverse mass along the normal is n_x²/m: J = (1 + e) v·n / (1/m₁ + n_x²/m₂); the support takes the rest."""
+    normal, speed = np.array([math.cos(angle), math.sin(angle)]), np.array([3.0, 1.0])
+    moving = {"position": [0.0, 0.0], "velocity": speed.tolist(), "mass": 2.0}
+    held = {"position": (0.5 * speed + 0.1 * normal).tolist(), "fixed": [False, True], "mass": 5.0}
+    session = Session.open(model([moving, held], settings={"restitution": restitution}))
+    session.run(time=0.55)
+    impulse = (1 + restitution) * (speed @ normal) / (1 / 2 + normal[0] ** 2 / 5)
+    expected = [speed - impulse / 2 * normal, [impulse / 5 * normal[0], 0.0]]
+    assert session.impacts.time == pytest.approx([0.5], rel=1e-12)
     assert session.impacts.impulse == pytest.approx([impulse], rel=1e-12)
-    assert session.particles["p0"].velocity == pytest.approx(
-        (1.0 - impulse * np.sqrt(0.5), -impulse * np.sqrt(0.5)), rel=1e-12
-    )
-    assert session.particles["p1"].velocity == pytest.approx((impulse * np.sqrt(0.5), 0.0), rel=1e-12)
+    assert session.particles.velocity == pytest.approx(np.array(expected), rel=1e-12, abs=1e-14)
     assert session.energy.imbalance == pytest.approx(0.0, abs=1e-14)
 
 

@@ -34,9 +34,7 @@ def program_of(model: Model, integrator: str = "velocity_verlet", form: str = FE
 
 def beam(count: int = 4, *, clamped: bool = True, **settings: Any) -> dict[str, Any]:
     """A cantilever along x with a force, a moment, a varying load, a distributed force, damped, one warm side, one hinge."""
-    particles: list[dict[str, Any]] = [{"name": f"P{i}", "position": [0.5 * i, 0.0]} for i in range(count + 1)]
-    particles[0] |= {"fixed": [True, True], "fixed_rotation": clamped}
-    particles[-1] |= {"force": [0.0, -1.0], "moment": 0.3}
+    foot, tip = {"fixed": [True, True], "fixed_rotation": clamped}, {"force": [0.0, -1.0], "moment": 0.3}
     member = {
         "stiffness": 2e4,
         "bending_stiffness": 50.0,
@@ -44,16 +42,12 @@ def beam(count: int = 4, *, clamped: bool = True, **settings: Any) -> dict[str, 
         "distributed_force": [0.1, -0.2],
         "temperature_gradient": 300.0,
     }
-    rods = [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **member} for i in range(count)]
     sine = {"kind": "sine", "frequency": 20.0}
-    loads = [{"name": "shaken", "on": f"P{count}", "force": [0.5, 0.2], "moment": 0.4, "history": sine}]
-    return models.model(
-        particles,
-        rods,
-        settings={"collisions": False, **settings},
-        environment={"drag": 2.0, "acceleration": [0.0, -9.81]},
-        loads=loads,
-    )
+    return models.line([(0.5 * i, 0.0) for i in range(count + 1)], foot, tip, **member) | {
+        "settings": {"collisions": False, **settings},
+        "environment": {"drag": 2.0, "acceleration": [0.0, -9.81]},
+        "loads": [{"name": "shaken", "on": f"P{count}", "force": [0.5, 0.2], "moment": 0.4, "history": sine}],
+    }
 
 
 def state_of(session: Session) -> bytes:
