@@ -19,7 +19,7 @@ from pinjoint.components.mistake import Explained, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.wording import missing
 from pinjoint.documents import models
-from pinjoint.documents.library import data_apart
+from pinjoint.documents.library import data_in
 from pinjoint.editor.frame import Frame
 from pinjoint.editor.scenes import all_scenes
 from pinjoint.interrupts import is_persons
@@ -47,7 +47,11 @@ SCALES = (1.0, 1e4, 1e-4)  # by which a person may zoom
 PATIENCE = 30.0  # s that some steps of the small model may take
 NEARBY = 1e-5  # of a distance, over which the slope of a potential is taken
 UNDECLARED = marked("{name}: it changed {column}, which it does not declare in writes or adds.")
+ASKED = marked("{name}: needs(model) changed {column}; it must not change the model.")
 NOT_REPEATED = marked("{name}: run twice, it gives another {column}; nothing may depend on chance.")
+NOT_IN_ORDER = marked(
+    "{name}: registered in another order, it gives another {column}; the order must not matter."
+)
 
 # Supports, springs that yield, dampers, drag, a load that varies, and a free body.
 EVERYTHING: Mapping[str, Any] = {
@@ -119,49 +123,24 @@ def check_system(
         if system not in known:
             raise SystemCheckError(missing(marked("systems"), system, known))
         system = type(known[system])
-    drives = isinstance(system(), Integrator)
-    needed = [source for source in models if _is_needed(system, source)]
     name = system().name
+    needed = sum(_check(system, source) for source in models)
+    if not needed and isinstance(system(), Integrator):
+        raise SystemCheckError(
+            "No model uses {name}; give check_system models=[…] with rods or drag.", name=name
+        )
     if not needed:
-        if drives:
-            raise SystemCheckError(
-                "No model uses {name}; give check_system models=[…] with rods or drag.", name=name
-            )
         raise SystemCheckError(
             "No model needs {name}; give check_system models=[…] for which needs() is true.", name=name
         )
-    check = _check_steps if isinstance(system(), StepSystem) else _check_frames
-    for source in needed:
-        check(system, source)
-    return Checked(name, len(needed))
+    return Checked(name, needed)
 
 
 def _model(source: Source) -> Model:
     return source() if callable(source) else models.load(source)
 
 
-def _is_needed(system: Callable[[], System], source: Source) -> bool:
-    """Whether a model needs the system; checks that needs() changes nothing and always answers alike.
-
-    Integrators once they are chosen: bodies in free flight need none.
-    """
-    model, made = _model(source), system()
-    if isinstance(made, Integrator):
-        simulation = Simulation(model, Schedule(_all_with(made)))
-        with _driven_by(made, simulation):
-            return simulation.integrator is made
-    before = columns_of(model)
-    answers = {bool(system().needs(model)) for _ in range(2)}
-    undeclared = marked("{name}: needs(model) changed {column}; it must not change the model.")
-    compare(system().name, before, columns_of(model), undeclared)
-    if len(answers) > 1:
-        raise SystemCheckError(
-            "{name}: needs(model) is sometimes true and sometimes false for the same model.", name=system().name
-        )
-    return answers.pop()
-
-
-def columns_of(model: Model) -> dict[str, Column]:
+def _columns_of(model: Model) -> dict[str, Column]:
     """Copies of all columns of document and state."""
     return {
         f"{table.name}.{field.name}": table.column(field.name).copy()
@@ -170,7 +149,7 @@ def columns_of(model: Model) -> dict[str, Column]:
     }
 
 
-def compare(
+def _compare(
     name: str,
     before: Mapping[str, Column],
     after: Mapping[str, Column],
@@ -187,35 +166,82 @@ def compare(
         raise SystemCheckError(refusal, name=name, column=column)
 
 
-# --- laws, commits and integrators ---------------------------------------------------------------------------
-
-
-def _all_with(system: System) -> list[System]:
-    """The systems of the program with this one in place of any of its name."""
-    return [*(other for other in all_systems() if other.name != system.name), system]
-
-
-def _check_steps(system: Callable[[], System], source: Source) -> None:
-    made = system()
-    assert isinstance(made, StepSystem)
-    first = _run(made, source, backwards=False)
-    before, after = columns_of(_model(source)), columns_of(first)
-    beside = (other for other in _all_with(made) if isinstance(other, StepSystem))
-    allowed = {*MOTION, *TURNING, "particles.asleep", "clock", *made.adds}
-    allowed |= {column for other in beside for column in other.writes}
-    if isinstance(made, Integrator):
-        allowed.add("settings.integrator")
-    compare(made.name, before, after, UNDECLARED, allowed)
+def _check(make: Callable[[], System], source: Source) -> bool:
+    """Check a system on a model; False if the model does not need it."""
+    made = make()
+    first = _run(made, source)
+    if first is None:
+        return False
+    allowed = {*made.writes, *made.adds}
+    if isinstance(made, StepSystem):  # the others of the program are at work, too
+        allowed |= {*MOTION, *TURNING, "particles.asleep", "clock", "settings.integrator"}
+        allowed |= {
+            column for other in all_systems() if isinstance(other, StepSystem) for column in other.writes
+        }
+    after = _columns_of(first)
+    _compare(made.name, _columns_of(_model(source)), after, UNDECLARED, allowed)
     _check_finite(made.name, first)
-    again = columns_of(_run(system(), source, backwards=False))
-    compare(made.name, after, again, NOT_REPEATED)
-    turned = columns_of(_run(system(), source, backwards=True))
-    refusal = marked(
-        "{name}: registered in another order, it gives another {column}; the order must not matter."
-    )
-    compare(made.name, after, turned, refusal)
+    for backwards, refusal in ((False, NOT_REPEATED), (True, NOT_IN_ORDER)):
+        again = _run(make(), source, backwards=backwards)
+        if again is None:
+            raise SystemCheckError(
+                "{name}: needs(model) is sometimes true and sometimes false for the same model.", name=made.name
+            )
+        _compare(made.name, after, _columns_of(again), refusal)
     if isinstance(made, Law) and made.each == "pairs":
         _check_pairs(made, first)
+    return True
+
+
+def _run(system: System, source: Source, *, backwards: bool = False) -> Model | None:
+    """A model after some steps or frames with a system; None if it needs no such one, as free flight no integrator.
+
+    backwards: the systems of the program, this one instead of any of its name, are registered in the opposite order.
+    """
+    model = _model(source)
+    if not isinstance(system, Integrator):
+        before, needed = _columns_of(model), system.needs(model)
+        _compare(system.name, before, _columns_of(model), ASKED)
+        if not needed:
+            return None
+    if not isinstance(system, StepSystem):
+        _run_frames(system, Session(model))
+        return model
+    systems = [*(other for other in all_systems() if other.name != system.name), system]
+    former = dict(INTEGRATORS)
+    try:
+        simulation = Simulation(model, Schedule(systems[::-1] if backwards else systems))
+        if isinstance(system, Integrator):
+            INTEGRATORS[system.key] = system
+            model.settings.integrator = system.key
+            if simulation.integrator is not system:
+                return None
+        simulation.advance(STEPS)
+    except (ScheduleError, ProgramError) as error:
+        raise SystemCheckError(str(error)) from None
+    finally:
+        INTEGRATORS.clear()
+        INTEGRATORS.update(former)
+    if simulation.reason is StopReason.DIVERGED:
+        raise SystemCheckError(
+            "{name}: in a run with it, numbers grow without limit. {message}",
+            name=system.name,
+            message=simulation.message,
+        )
+    return model
+
+
+def _run_frames(system: System, session: Session) -> None:
+    """Run a system for FRAMES frames. Raises SystemCheckError if it fails, or changes columns that it does not declare."""
+    before = _columns_of(session.model)
+    for _ in range(FRAMES):
+        session.model.activate()
+        try:
+            system.process(Frame(session, FRAME))
+        except Exception as error:
+            told = {"name": system.name, "kind": type(error).__name__, "error": error}
+            raise SystemCheckError("{name} raises {kind}: {error}", **told) from error
+    _compare(system.name, before, _columns_of(session.model), UNDECLARED, {*system.writes, *system.adds})
 
 
 def _check_pairs(law: Law, model: Model) -> None:
@@ -277,40 +303,6 @@ def _as_tuples(value: Any) -> Any:
     return tuple(map(_as_tuples, value)) if isinstance(value, list) else value
 
 
-def _run(system: System, source: Source, *, backwards: bool) -> Model:
-    model = _model(source)
-    systems = _all_with(system)
-    try:
-        simulation = Simulation(model, Schedule(systems[::-1] if backwards else systems))
-        with _driven_by(system, simulation):
-            simulation.advance(STEPS)
-    except (ScheduleError, ProgramError) as error:
-        raise SystemCheckError(str(error)) from None
-    if simulation.reason is StopReason.DIVERGED:
-        raise SystemCheckError(
-            "{name}: in a run with it, numbers grow without limit. {message}",
-            name=system.name,
-            message=simulation.message,
-        )
-    return model
-
-
-@contextmanager
-def _driven_by(system: System, simulation: Simulation) -> Iterator[None]:
-    """While inside, an integrator takes the steps of the simulation; other systems change nothing."""
-    if not isinstance(system, Integrator):
-        yield
-        return
-    former = dict(INTEGRATORS)
-    INTEGRATORS[system.key] = system
-    try:
-        simulation.model.settings.integrator = system.key
-        yield
-    finally:
-        INTEGRATORS.clear()
-        INTEGRATORS.update(former)
-
-
 def _check_finite(name: str, model: Model) -> None:
     for table in model.tables.values():
         for field in table.fields_in(Role.STATE):
@@ -322,31 +314,6 @@ def _check_finite(name: str, model: Model) -> None:
                     count=STEPS,
                     column=column,
                 )
-
-
-# --- frame systems -----------------------------------------------------------------------------------------
-
-
-def _check_frames(system: Callable[[], System], source: Source) -> None:
-    made, session = system(), Session(_model(source))
-    run_frames(made, session)
-    _check_finite(made.name, session.model)
-    other = Session(_model(source))
-    run_frames(system(), other)
-    compare(made.name, columns_of(session.model), columns_of(other.model), NOT_REPEATED)
-
-
-def run_frames(system: System, session: Session) -> None:
-    """Run a system for FRAMES frames. Raises SystemCheckError if it fails, or changes columns that it does not declare."""
-    before = columns_of(session.model)
-    for _ in range(FRAMES):
-        session.model.activate()
-        try:
-            system.process(Frame(session, FRAME))
-        except Exception as error:
-            told = {"name": system.name, "kind": type(error).__name__, "error": error}
-            raise SystemCheckError("{name} raises {kind}: {error}", **told) from error
-    compare(system.name, before, columns_of(session.model), UNDECLARED, {*system.writes, *system.adds})
 
 
 # --- a whole mod -------------------------------------------------------------------------------------------
@@ -365,7 +332,7 @@ class Trial:
         heard, known, patience = LOG.disabled, len(EXTENSIONS.faults), Choice.patience
         LOG.disabled, Choice.patience = True, PATIENCE
         try:
-            with data_apart():
+            with data_in():
                 self._try_all()
         finally:
             LOG.disabled, Choice.patience = heard, patience
@@ -376,7 +343,6 @@ class Trial:
         for system in systems:
             with self._part():
                 self._read(system)
-        self._check_keys()
         if self.found:
             return  # a run would only fail for the same reasons
         for scene in (PAUSE, SIMULATION, *(scene.name for scene in all_scenes() if scene.mod is self.mod)):
@@ -385,7 +351,7 @@ class Trial:
         for action, binding in ACTIONS.bound():
             for scene in binding.scenes if action.name.startswith(f"{self.mod.name}.") else ():
                 with self._part():
-                    self._press(binding.key, scene)
+                    self._press(action.name, binding.key, scene)
         for integrator in (*(s.key for s in systems if isinstance(s, Integrator)), "velocity_verlet"):
             with self._part():
                 self._run(integrator)
@@ -434,20 +400,6 @@ class Trial:
                 if getattr(system, kernel, "") and (problem := problem_of(bind(system, model, kernel), model)):
                     self._note(problem)
 
-    def _check_keys(self) -> None:
-        group, scenes = marked("scenes"), {scene.name for scene in all_scenes()}
-        for action, binding in ACTIONS.bound():
-            if action.name.startswith(f"{self.mod.name}."):
-                for scene in sorted(set(binding.scenes) - scenes):
-                    problem = missing(group, scene, scenes)
-                    sentence = tr(
-                        "The key '{key}' for {action}: {problem}",
-                        key=binding.key,
-                        action=action.name,
-                        problem=problem,
-                    )
-                    self._note(sentence)
-
     # --- what must be tried ----------------------------------------------------------------------------
 
     def _live_in(self, scene: str) -> None:
@@ -456,7 +408,7 @@ class Trial:
         for systems in session.plan(scene).phases.values():
             for system in systems:
                 if system.mod is self.mod and not isinstance(system, StepSystem):
-                    run_frames(system, session)
+                    _run_frames(system, session)
         for size in SIZES:
             session.resize(*size)
             for scale in SCALES:
@@ -477,7 +429,11 @@ class Trial:
             session.scenes.request(PAUSE)
             session.frame(FRAME)
 
-    def _press(self, key: str, scene: str) -> None:
+    def _press(self, action: str, key: str, scene: str) -> None:
+        if scene not in (names := [known.name for known in all_scenes()]):
+            problem = missing(marked("scenes"), scene, names)
+            self._note(tr("The key '{key}' for {action}: {problem}", key=key, action=action, problem=problem))
+            return
         session = _session(self.mod, scene)
         session.select(*session.particles.handles[:1])
         session.press(key)
@@ -511,18 +467,20 @@ def _session(mod: Mod, scene: str) -> Session:
 
 def _way_to(session: Session, scene: str) -> list[str]:
     """The scenes through which one gets from pause to a scene, itself included. Raises ValueError."""
-    ways: dict[str, list[str]] = {session.scene: []}
-    for here in (pending := [session.scene]):
-        for name in session.scenes.names:
-            if name not in ways and (
-                name in session.scenes[here].targets or here in session.scenes[name].sources
-            ):
-                ways[name] = [*ways[here], name]
-                pending.append(name)
-    if scene not in ways:
-        raise WrongValue(
-            "The scene '{name}' cannot be reached; list the scenes that lead to it in its sources", name=scene
-        )
+    scenes, ways = session.scenes, {session.scene: list[str]()}
+    while scene not in ways:
+        further = {
+            name: [*way, name]
+            for here, way in ways.items()
+            for name in {*scenes.names} - {*ways}
+            if name in scenes[here].targets or here in scenes[name].sources
+        }
+        if not further:
+            raise WrongValue(
+                "The scene '{name}' cannot be reached; list the scenes that lead to it in its sources",
+                name=scene,
+            )
+        ways |= further
     return ways[scene]
 
 

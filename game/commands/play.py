@@ -59,14 +59,14 @@ def command(words: Sequence[str]) -> int:
             failures = in_window(models.load(source), file_of(source), lesson=loaded)
         elif loaded.task_count:
             playing.check_mods(loaded)
-            kept.enter_context(library.data_apart())
+            kept.enter_context(library.data_in())
             failures = check_lesson(loaded)
         else:
             session = playing.session_of(loaded)
             follow(session.simulation.progress)
             tell(session.notice)
             if not loaded.has_data:  # so that it ends alike however often it is played
-                kept.enter_context(library.data_apart())
+                kept.enter_context(library.data_in())
             with progress.not_kept(), spoken(loaded.language or asked_language() or ENGLISH):
                 failures = playing.play(loaded, session)
     found = {

@@ -177,7 +177,7 @@ def _animate(session: Session, options: argparse.Namespace, size: tuple[int, int
     for moment in moments:
         moment.restore(session.model)
         image = Image.fromarray(pictures.frame(session, size, options.theme, around, placed))
-        images.append(image.quantize(128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE))
+        images.append(image.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE))
     durations = [round(1000 * FRAME)] * (len(images) - 1) + [round(1000 * HELD)]
     made = io.BytesIO()
     images[0].save(made, "GIF", save_all=True, append_images=images[1:], duration=durations, loop=0)

@@ -64,7 +64,6 @@ class Chronicle:
         self._looked = -1.0
         self._yielded: tuple[Column, list[Happening]] = np.empty(0), []
         self._struck: tuple[bytes, list[Happening], int] = b"", [], 0
-        self._factors: tuple[int, dict[float, float | None]] = -1, {}
         self._known: set[Happening] = set()
         self._telling: list[tuple[Happening, float]] = []
 
@@ -184,14 +183,8 @@ class Chronicle:
         )
 
     def _happening(self, kind: str, time: float, message: str, some: tuple[str, ...] = ()) -> Happening:
-        """What happened, with the load then, which is found once, since frames ask again and again."""
-        edited = self._model.newest(Role.DOCUMENT)
-        if self._factors[0] != edited:
-            self._factors = edited, {}
-        factors = self._factors[1]
-        if time not in factors:
-            factors[time] = load_factor(self._model, time)
-        return Happening(kind, time, message, some, factors[time])
+        """What happened, with the load then."""
+        return Happening(kind, time, message, some, load_factor(self._model, time))
 
     # --- by looking ----------------------------------------------------------------------------------
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components.bent import largest_sag
 from pinjoint.components.field import Role
@@ -15,15 +14,13 @@ from pinjoint.components.obstacles import obstacles
 from pinjoint.components.round_numbers import round_down
 from pinjoint.documents.assessment import LARGEST
 from pinjoint.systems.edit.arrows import extent
-from pinjoint.systems.physics.pace import expected_displacement, loaded_mode
+from pinjoint.systems.physics.pace import expected_response, loaded_mode
 
 DRAWN = 0.08  # of the structure's size: the largest displacement as drawn, at most, when a factor is chosen
 KEPT = (0.02, 0.25)  # of the size, drawn, within which a factor stays as it is
 FROM = 5.0  # the smallest factor; what would need less is seen without one
 TRUE = 1.0  # the factor of motions that are seen without one
 LEAST = 1e-7  # of the size: smaller displacements are rounding
-
-Displacement = NDArray[np.float64]
 
 
 class Exaggeration:
@@ -36,7 +33,6 @@ class Exaggeration:
     def __init__(self, model: Model) -> None:
         self._model = model
         self._seen: tuple[int, ...] = ()
-        self._expected: tuple[int, float] = -1, 0.0
 
     def review(self, *, still: bool) -> bool:
         """Choose anew if the model was edited, or moved and stands `still` now; True if the drawn factor changed."""
@@ -54,42 +50,31 @@ class Exaggeration:
         """The factor that suits the model, the present one if it does."""
         model, present = self._model, float(self._model.settings.automatic_displacement_scale)
         size = extent(model) if model.particles.count else 0.0
-        if not 0.0 < size < math.inf or _moves_far(model):
+        if not 0.0 < size < math.inf or incomputable(model) or _moves_far(model):
             return TRUE
-        largest = max(self._largest_expected(), _amplitude(model) if still else 0.0)
+        largest = max(_largest_expected(model), _amplitude(model) if still else 0.0)
         if not math.isfinite(largest):
             return TRUE
         if largest < LEAST * size:
             return present
-        most = DRAWN * size / largest
-        if KEPT[0] <= present * largest / size <= KEPT[1] and present <= max(most * KEPT[1] / DRAWN, TRUE):
+        if KEPT[0] <= present * largest / size <= KEPT[1]:
             return present
+        most = DRAWN * size / largest
         return round_down(most) if most >= FROM else TRUE
 
-    def _largest_expected(self) -> float:
-        """The largest displacement that theory expects (m), infinite if not a small one; 0 of a large structure."""
-        model = self._model
-        if model.rods.count > LARGEST:
-            return 0.0
-        revision = model.newest(Role.DOCUMENT)
-        if self._expected[0] != revision:
-            found = None if incomputable(model) else expected_displacement(model)
-            if found is not None and _spare(model) <= 0 and _yields(model, found):
-                found = None  # it collapses
-            size = math.inf if found is None else float(np.abs(found).max(initial=0.0))
-            self._expected = revision, size
-        return self._expected[1]
 
-
-def _yields(model: Model, displacement: Displacement) -> bool:
-    """True if a rod is stressed beyond its strength, or a cable pushed, by small displacements (n, 2) in m."""
-    rods = model.rods
-    ends = rods.between.astype(np.intp)
-    axis = rods.difference / np.where(rods.original_length > 0.0, rods.original_length, 1.0)[:, None]
-    elongation = rods.misfit + ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * axis).sum(axis=1)
-    force = rods.stiffness / rods.rest_length * elongation
-    beyond = (force > rods.tension_limit) | (force < -rods.compression_limit)
-    return bool((beyond & model.settings.plasticity | rods.tension_only & (force < 0.0)).any())
+def _largest_expected(model: Model) -> float:
+    """The largest displacement that theory expects (m), infinite if not a small one; 0 of a large structure."""
+    if model.rods.count > LARGEST:
+        return 0.0
+    found = expected_response(model)
+    if found is None:
+        return math.inf
+    rods, (displacement, force) = model.rods, found
+    yields = model.settings.plasticity & ((force > rods.tension_limit) | (force < -rods.compression_limit))
+    if _spare(model) <= 0 and (yields | rods.tension_only & (force < 0.0)).any():
+        return math.inf  # it collapses
+    return float(np.abs(displacement).max(initial=0.0))
 
 
 def _spare(model: Model) -> int:
@@ -114,7 +99,7 @@ def _amplitude(model: Model) -> float:
     """The largest displacement that there is, or that a vibration as fast as the present one leads to (m)."""
     particles = model.particles
     displacement, velocity = particles.displacement, particles.velocity
-    if velocity.any() and model.rods.count <= LARGEST and not incomputable(model):
+    if velocity.any() and model.rods.count <= LARGEST:
         mode = loaded_mode(model)
         if mode is not None:
             displacement = np.hypot(displacement, velocity / mode[0])

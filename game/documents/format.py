@@ -94,20 +94,16 @@ def upgraded(document: Mapping[str, Any]) -> Mapping[str, Any]:
     """
     stated = document.get(MODS, {})
     _check(stated)
-    waiting = [
-        name
-        for name in EXTENSIONS.upgrades
-        if _is_older(stated.get(name, ""), EXTENSIONS.versions.get(name, ""))
-    ]
+    versions = EXTENSIONS.versions
+    older = [name for name in EXTENSIONS.upgrades if _is_older(stated.get(name, ""), versions.get(name, ""))]
+    present = mods_in(document) if older else ()
+    waiting = [name for name in older if name in present]
     if not waiting:
         return document
-    present = mods_in(document)
-    made: dict[str, Any] | None = None
+    made = copy.deepcopy(dict(document))
     for name in waiting:
-        if name in present:
-            made = copy.deepcopy(dict(document)) if made is None else made
-            EXTENSIONS.upgrades[name](made, stated.get(name, ""))
-    return document if made is None else made
+        EXTENSIONS.upgrades[name](made, stated.get(name, ""))
+    return made
 
 
 def mods_in(document: Mapping[str, Any]) -> set[str]:
@@ -125,20 +121,14 @@ def _check(stated: Any) -> None:
     if not isinstance(stated, Mapping):
         raise WrongValue("it must be an object such as {form}.", form='{"wind": "1.0"}')
     for name, version in stated.items():
-        if not isinstance(version, str) or not _is_version(version):
+        from packaging.version import InvalidVersion, Version  # only where there is a mod
+
+        try:
+            Version(version)
+        except (InvalidVersion, TypeError):
             raise WrongValue(
                 'the version of {name} is {version}; write it like "1.0".', name=name, version=quoted(version)
-            )
-
-
-def _is_version(text: str) -> bool:
-    from packaging.version import InvalidVersion, Version  # only where there is a mod
-
-    try:
-        Version(text)
-    except InvalidVersion:
-        return False
-    return True
+            ) from None
 
 
 def _is_older(stated: str, present: str) -> bool:

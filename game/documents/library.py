@@ -41,24 +41,18 @@ def data_folder() -> Path:
 
 
 @contextmanager
-def data_in(folder: Path) -> Iterator[None]:
-    """As long as this lasts, this person's data lies in another folder."""
+def data_in(folder: Path | None = None) -> Iterator[Path]:
+    """As long as this lasts, this person's data lies in another folder; None: in an empty one that is gone afterwards."""
     before = os.environ.get(DATA_VARIABLE)
-    os.environ[DATA_VARIABLE] = str(folder)
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ[DATA_VARIABLE]
-        else:
-            os.environ[DATA_VARIABLE] = before
-
-
-@contextmanager
-def data_apart() -> Iterator[Path]:
-    """As long as this lasts, data lies in an empty folder that is gone afterwards."""
-    with TemporaryDirectory() as folder, data_in(Path(folder)):
-        yield Path(folder)
+    with TemporaryDirectory() as empty:
+        os.environ[DATA_VARIABLE] = str(folder or empty)
+        try:
+            yield folder or Path(empty)
+        finally:
+            if before is None:
+                del os.environ[DATA_VARIABLE]
+            else:
+                os.environ[DATA_VARIABLE] = before
 
 
 def models_folder() -> Path:

@@ -29,7 +29,7 @@ from pinjoint.components.wording import nearest, quoted
 from pinjoint.documents.document import document, parse
 from pinjoint.documents.format import ModelError
 
-UNHELD = 60.0  # s after which a running program holds a file that it made
+LEFT = 3600.0  # s after which nobody writes to the file of a save any more
 
 __all__ = [
     "ModelError",
@@ -103,7 +103,12 @@ def load(source: str | Path | Mapping[str, Any]) -> Model:
     except IsADirectoryError:
         raise ModelError("'{source}' is a folder; name a model file in it.", source=source) from None
     except FileNotFoundError:
-        raise _missing(source) from None
+        near = nearest(Path(source).stem, bundled(), cutoff=0.6)
+        message = marked("There is no file and no bundled model '{source}'.")
+        if near:
+            message = marked("There is no file and no bundled model '{source}'; did you mean '{near}'?")
+        hint = tr("pinjoint --help lists the bundled models.")
+        raise ModelError(joined([tr(message, source=source, near=near), hint])) from None
     except (OSError, ValueError) as error:
         raise ModelError(
             "{source} cannot be read: {reason}. Check its path and permissions.",
@@ -135,17 +140,6 @@ def _found(source: str | Path) -> Path | Traversable:
 def name_of(path: Path) -> str:
     """What the model in a file is called; bytes that are no text as "�"."""
     return os.fsencode(path.stem).decode(errors="replace")
-
-
-def _missing(source: str | Path) -> ModelError:
-    near = nearest(Path(source).stem, bundled(), cutoff=0.6)
-    if near:
-        message = marked("There is no file and no bundled model '{source}'; did you mean '{near}'?")
-    else:
-        message = marked("There is no file and no bundled model '{source}'.")
-    return ModelError(
-        joined([tr(message, source=source, near=near), tr("pinjoint --help lists the bundled models.")])
-    )
 
 
 def _reason(error: Exception) -> str:
@@ -260,20 +254,16 @@ def replace(path: str | Path, content: bytes) -> None:
         return
     _clear_leftovers(path.parent)
     temporary = path.with_name(f".{uuid.uuid4().hex}.tmp")
-    file = lock_file(temporary) or temporary.open("ab")
     try:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
+        with temporary.open("xb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
         if path.exists():
             shutil.copymode(path, temporary)
-        if sys.platform == "win32":  # where no open file can be renamed, nor deleted
-            file.close()
         temporary.replace(path)
         _sync(path.parent)
     finally:
-        with suppress(OSError):  # what it could not write it would try to write again
-            file.close()
         temporary.unlink(missing_ok=True)
 
 
@@ -297,16 +287,10 @@ def lock_file(path: Path) -> IO[bytes] | None:
 
 @cache
 def _clear_leftovers(folder: Path) -> None:
-    """Delete what programs that were killed while they saved have left in a folder; a running one holds its file.
-
-    An empty one may be about to be held.
-    """
+    """Delete what programs that were killed while they saved have left in a folder."""
     for path in folder.glob(f".{'[0-9a-f]' * 32}.tmp"):
         with suppress(OSError):
-            found = path.lstat()
-            held_by_now = found.st_size > 0 or time.time() - found.st_mtime > UNHELD
-            if held_by_now and (file := lock_file(path)) is not None:
-                file.close()
+            if time.time() - path.lstat().st_mtime > LEFT:
                 path.unlink()
 
 

@@ -244,7 +244,8 @@ class OpenDocuments:
         self.current.history.forget_undone()
         earlier, later = self._documents[: self._at], self._documents[self._at + 1 :]
         for document in later:
-            document.history.redo_all()
+            while document.history.redo():
+                pass
         here = [self.current] if keep or self.current.unsaved else []
         self._documents = [*earlier, *later, *here, OpenDocument(model, self._schedule, self._pull, file)]
         self._at = len(self._documents) - 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -18,39 +19,30 @@ LARGEST_SHOWN = 2000  # rods, up to which forces can be told apart in one
 
 
 def preview(source: str | Path) -> Model:
-    """A model to look at only: a file as it was saved, an example at a moment when something happens. Raises ModelError."""
+    """A model to look at only: a file as it was saved, an example at a moment when something happens. Raises ModelError.
+
+    A small structure that never moved has the forces of linear theory.
+    """
     if isinstance(source, str):
         return _example(source)
     model = models.load(source)
-    if has_moved(model) and model.rods.count <= LARGEST_SHOWN:
-        # Here only, since most pictures do without.
+    particles, rods = model.particles, model.rods
+    has_moved = particles.displacement.any() or particles.velocity.any()
+    if 0 < rods.count <= (LARGEST_SHOWN if has_moved else LARGEST_SOLVED):
+        # Here only, since examples do without.
         from pinjoint.systems.statics.equations import Structure
+        from pinjoint.systems.statics.events import NoEquilibrium
+        from pinjoint.systems.statics.theory import linear
 
-        structure, particles = Structure.of(model), model.particles
-        place = structure.field(particles.displacement, particles.rotation)
-        moved = structure.respond(place, model.rods.plastic_strain)
-        model.writable("rods.axial_force")[...] = moved.axial_force
+        with suppress(NoEquilibrium):  # of a mechanism, such as a pendulum
+            if has_moved:
+                structure = Structure.of(model)
+                place = structure.field(particles.displacement, particles.rotation)
+                force = structure.respond(place, rods.plastic_strain).axial_force
+            else:
+                force = linear(model).axial_force
+            model.writable("rods.axial_force")[...] = force
     return model
-
-
-def solved(path: Path) -> Model | None:
-    """A small structure that never moved, with forces of linear theory; None if a file has no such. Raises ModelError."""
-    from pinjoint.systems.statics.events import NoEquilibrium
-    from pinjoint.systems.statics.theory import linear  # scipy
-
-    model = models.load(path)
-    if has_moved(model) or not 0 < model.rods.count <= LARGEST_SOLVED:
-        return None
-    try:
-        model.writable("rods.axial_force")[...] = linear(model).axial_force
-    except NoEquilibrium:  # of a mechanism, such as a pendulum
-        return None
-    return model
-
-
-def has_moved(model: Model) -> bool:
-    """True if the state of a model is another than the original one."""
-    return bool(model.particles.displacement.any() or model.particles.velocity.any())
 
 
 @cache

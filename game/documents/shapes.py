@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +19,6 @@ from pinjoint.components.view import Shape
 from pinjoint.components.wording import cut
 from pinjoint.documents.assessment import LARGEST
 from pinjoint.systems.edit.arrows import extent
-
-if TYPE_CHECKING:  # it imports scipy
-    from pinjoint.systems.statics.buckling import Buckling
 
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
 LOWEST = 10  # mechanisms, and modes, in the round of `next`
@@ -88,7 +85,10 @@ def _first_ones(model: Model) -> list[Shape]:
             count=LARGEST,
         )
     _check_range(model)
-    found = [*mechanism_shapes(model, LOWEST), *_meant(model), *mode_shapes(model, LOWEST)]
+    found = mechanism_shapes(model, LOWEST)
+    with suppress(NoShape):
+        found += buckling_shapes(model, LOWEST_BUCKLING, elastic=True)
+    found += mode_shapes(model, LOWEST)
     if not found:
         raise NoShape("There are no mechanisms and no modes, because no rod has an end that is free to move.")
     return found
@@ -120,9 +120,13 @@ def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
     ]
 
 
-def buckling_shapes(model: Model, most: int = LOWEST) -> list[Shape]:
-    """The modes in which the structure gives way under its load. Raises NoShape, saying why there is none."""
-    from pinjoint.systems.statics.buckling import Buckling
+def buckling_shapes(model: Model, most: int = LOWEST, *, elastic: bool = False) -> list[Shape]:
+    """The modes in which the structure gives way under its load, with their factors, and the effective length of the
+    rod whose compression leads each. Raises NoShape, saying why there is none.
+
+    elastic: without those of factors at which what is compressed were strained beyond all that is elastic.
+    """
+    from pinjoint.systems.statics.buckling import STRAINED, Buckling
     from pinjoint.systems.statics.events import NoEquilibrium
 
     try:
@@ -131,26 +135,10 @@ def buckling_shapes(model: Model, most: int = LOWEST) -> list[Shape]:
         raise NoShape(str(reason)) from None
     if found.message:
         raise NoShape(found.message)
-    return _buckled(model, found)
-
-
-def _meant(model: Model) -> list[Shape]:
-    """The lowest buckling modes, but of factors at which what is compressed were strained beyond all that is elastic."""
-    from pinjoint.systems.statics.buckling import STRAINED, Buckling
-    from pinjoint.systems.statics.events import NoEquilibrium
-
-    try:
-        found = Buckling.of(model, LOWEST_BUCKLING)
-    except NoEquilibrium:
-        return []
-    strains = [(-(found.dead + factor * found.live) / model.rods.stiffness).max() for factor in found.factors]
-    return [shape for shape, strain in zip(_buckled(model, found), strains, strict=True) if strain <= STRAINED]
-
-
-def _buckled(model: Model, found: Buckling) -> list[Shape]:
-    """The modes with their factors, and the effective length of the rod whose compression leads each."""
     shapes = []
     for number, (factor, motion) in enumerate(zip(found.factors, found.modes, strict=True), start=1):
+        if elastic and (-(found.dead + factor * found.live) / model.rods.stiffness).max() > STRAINED:
+            continue
         row, length = int(found.leading[number - 1]), float(found.leading_length[number - 1])
         told = {
             "number": number,

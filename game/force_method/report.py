@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from reportlab.platypus import Flowable, KeepTogether
@@ -309,35 +310,22 @@ class _Page:
                 self._text(numbers.replace(" = ", "\u00a0=\u00a0"), "equation"),
                 self._text(found[0], "result"),
             ]
-        lines = [matrices([*self._numbers()], self.layout)]
+        every, held = self._every, solution.prescribed
+        number = np.vectorize(lambda value: written.number(self.solved.factor * value, EXACT), otypes=[object])
+        forms: list[Any] = [(number(solution.flexibility), number(solution.gap), number(held))]
         if count <= PRODUCTS:
-            lines.insert(0, matrices([*self._symbols()], self.layout))
+            matrix = [[f"δ{index(i + 1, j + 1)}" for j in every] for i in every]
+            gap = [f"δ{index(i + 1, 0)}" for i in every]
+            forms.insert(0, (matrix, gap, [f"c{index(i + 1)}" if held[i] else "0" for i in every]))
+        unknowns = [[f"X{index(i + 1)}"] for i in every]
+        lines = [
+            matrices([matrix, unknowns, "+", [[x] for x in gap], "=", [[x] for x in right]], self.layout)
+            for matrix, gap, right in forms
+        ]
         symmetric = tr("The matrix is symmetric: δ₁₂ = δ₂₁ (Maxwell).")
         rows = in_rows(lines)
         result = self._text(_APART.join(found), "result")
         return [heading, self._text(f"{symmetric} {said}"), *rows, result]
-
-    def _numbers(self) -> Iterator[str | list[list[str]]]:
-        solution, factor = self.solution, self.solved.factor
-
-        def rows(values: Sequence[Sequence[float]]) -> list[list[str]]:
-            return [[written.number(factor * value, EXACT) for value in row] for row in values]
-
-        yield rows(solution.flexibility.tolist())
-        yield [[f"X{index(i + 1)}"] for i in self._every]
-        yield "+"
-        yield rows(solution.gap[:, None].tolist())
-        yield "="
-        yield rows(solution.prescribed[:, None].tolist())
-
-    def _symbols(self) -> Iterator[str | list[list[str]]]:
-        every = self._every
-        yield [[f"δ{index(i + 1, j + 1)}" for j in every] for i in every]
-        yield [[f"X{index(i + 1)}"] for i in every]
-        yield "+"
-        yield [[f"δ{index(i + 1, 0)}"] for i in every]
-        yield "="
-        yield [[f"c{index(i + 1)}" if c else "0"] for i, c in enumerate(self.solution.prescribed.tolist())]
 
     def of_thesis(self) -> list[Flowable]:
         """The same in the thesis' convention."""

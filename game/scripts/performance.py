@@ -66,7 +66,7 @@ class Performance:
 
         The script saves in a folder of its own; afterwards its models count as unsaved work.
         """
-        apart = nullcontext() if self._script.has_data else library.data_apart()
+        apart = nullcontext() if self._script.has_data else library.data_in()
         with apart as folder, spoken(self._script.language):
             failures = self._perform_all()
         for document in self._screen.session.documents:

@@ -78,22 +78,30 @@ def loaded_mode(model: Model) -> tuple[float, float] | None:
     return (frequency, damped) if frequency > 0.0 else None
 
 
-def expected_displacement(model: Model) -> Array | None:
-    """Linear displacement (n, 2), m, under the loads at their full values, lack of fit, temperature and moved supports.
+def expected_response(model: Model) -> tuple[Array, Array] | None:
+    """Linear displacement (n, 2), m, and axial force (rods,), kN, under all that acts.
 
-    None where it is not small, as that of a mechanism.
+    That is the loads at their full values, lack of fit, temperature and moved supports. None where the displacement is
+    not small, as that of a mechanism.
     """
     particles, rods = model.particles, model.rods
-    moved = np.where(particles.mobility > 0.0, 0.0, particles.displacement)
     ends = rods.between.astype(np.intp)
     axis = rods.difference / np.where(rods.original_length > 0.0, rods.original_length, 1.0)[:, None]
-    elongation = rods.misfit + ((moved[ends[:, 1]] - moved[ends[:, 0]]) * axis).sum(axis=1)
-    tension = (rods.stiffness / rods.rest_length * elongation)[:, None] * axis
+
+    def axial_force(moved: Array) -> Array:
+        elongation = rods.misfit + ((moved[ends[:, 1]] - moved[ends[:, 0]]) * axis).sum(axis=1)
+        return np.asarray(rods.stiffness / rods.rest_length * elongation)
+
+    moved = np.where(particles.mobility > 0.0, 0.0, particles.displacement)
+    tension = axial_force(moved)[:, None] * axis
     force = _forces(model).reshape(free_coordinates(model).shape)
     np.add.at(force[:, :2], ends[:, 0], tension)
     np.add.at(force[:, :2], ends[:, 1], -tension)
     displacement = _static_displacement(model, force.ravel())
-    return None if displacement is None else displacement[:, :2] + moved
+    if displacement is None:
+        return None
+    moved = displacement[:, :2] + moved
+    return moved, axial_force(moved)
 
 
 def _static_displacement(model: Model, force: Array) -> Array | None:

@@ -2,12 +2,10 @@
 
 import gc
 import os
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from itertools import count
-from pathlib import Path
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
@@ -223,7 +221,7 @@ def reactions(*, quick: bool) -> Iterator[Row]:
     What the picture before said that it is worked on need not be.
     """
     rods = 2_000 if quick else 10_000
-    with tempfile.TemporaryDirectory() as folder, library.data_in(Path(folder)), closing(Hand(rods)) as hand:
+    with library.data_in(), closing(Hand(rods)) as hand:
         hand.session.save_as(library.data_folder() / "lattice.json")
         for what, act, times in SESSION:
             hand.wait()

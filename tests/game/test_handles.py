@@ -8,7 +8,7 @@ from pinjoint import Session
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
 from pinjoint.components.view import Readout
-from pinjoint.documents.library import data_apart
+from pinjoint.documents.library import data_in
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
@@ -76,7 +76,7 @@ def state_of(session: Session) -> tuple[object, ...]:
 @pytest.mark.parametrize("window", [WIDE, LOW], ids=["wide", "low"])
 @pytest.mark.parametrize("name", [*EVERYWHERE, *MORE])
 def test_every_cross_and_knob_that_is_drawn_works(name: str, window: Window) -> None:
-    with data_apart():
+    with data_in():
         session = (EVERYWHERE | MORE)[name](window)
         if session.view.menu is not None or session.view.help:
             session.press("escape")  # which take clicks first

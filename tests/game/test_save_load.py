@@ -461,7 +461,6 @@ def test_pictures_are_read_few_a_frame_and_only_where_they_are_seen(
     session: Session, data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(files, "READING", 0.0)  # which is time enough for one
-    monkeypatch.setattr(files, "has_moved", lambda model: True)  # so that no forces are found afterwards
     (data / "models").mkdir(parents=True)
     content = json.dumps(triangle()).encode()
     for number in range(60):

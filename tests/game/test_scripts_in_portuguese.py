@@ -23,13 +23,13 @@ SCRIPTED = sorted((Path(__file__).parents[1] / "scripted").glob("*.jsonl"))
 
 @pytest.mark.parametrize("source", [*lessons(), *SCRIPTED], ids=lambda source: Path(source).stem)
 def test_scripts_play_where_every_word_differs(source):
-    with pseudo(), library.data_apart():
+    with pseudo(), library.data_in():
         assert not play(Script(source))
 
 
 @pytest.mark.parametrize("name", lessons(TO_DO))
 def test_tasks_of_lessons_are_solved_where_every_word_differs(name):
-    with pseudo(), library.data_apart():
+    with pseudo(), library.data_in():
         assert not check_lesson(Script(name))
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.components.language import spoken
-from pinjoint.documents.library import data_apart
+from pinjoint.documents.library import data_in
 from pinjoint.documents.models import bundled
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.systems.input.actions import ACTIONS
@@ -75,7 +75,7 @@ ALL = SCENES | STATES | TOOLS | MODELS
 
 def read(name: str, window: Window) -> Iterator[list[Picture]]:
     """What a scene shows in a window, and what is reached by scrolling or on further pages."""
-    with data_apart():
+    with data_in():
         session = ALL[name](window)
         on = "f1" if session.view.help else "wheel down" if isinstance(session.scenes.active, FormScene) else ""
         if window.height < SHORT and on != "wheel down":
@@ -212,7 +212,7 @@ def test_texts_are_translated_whole_and_clear_of_one_another(name: str, language
 @pytest.mark.parametrize("name", ["properties-all-refused", "properties-environment"])
 def test_every_box_is_reached_by_scrolling(name: str, size: str) -> None:
     told = {text for shown in read(name, SIZES[size]) for picture in shown for text in picture.texts}
-    with data_apart():
+    with data_in():
         scene = ALL[name](SIZES[size]).scenes.active
     assert isinstance(scene, FormScene)
     assert {box.title for box in scene.form.boxes} <= told

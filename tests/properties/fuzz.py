@@ -244,9 +244,9 @@ def _same(one: Print, other: Print) -> bool:
 def explore(first: int, count: int, actions: int = 500) -> int:
     """Sessions with so many actions each; returns how many went wrong."""
     wrong = 0
-    with tempfile.TemporaryDirectory() as folder, data_in(Path(folder)), contextlib.chdir(folder):
+    with data_in() as folder, contextlib.chdir(folder):
         for seed in range(first, first + count):
-            fuzz = Fuzz(seed, Path(folder))
+            fuzz = Fuzz(seed, folder)
             try:
                 fuzz.run(actions)
             except Exception:

@@ -7,7 +7,6 @@ when the window was closed. `python -m tests.properties.fuzz windows` has as man
 import contextlib
 import os
 import random
-import tempfile
 import traceback
 import warnings
 from pathlib import Path
@@ -227,10 +226,10 @@ def explore(first: int, count: int, actions: int = 300) -> int:
     """Windows with so many actions each; returns how many went wrong."""
     pygame_input.IDLE_PAUSE = 0.0
     wrong = 0
-    with tempfile.TemporaryDirectory() as name, data_in(Path(name)), contextlib.chdir(name):
+    with data_in() as folder, contextlib.chdir(folder):
         for seed in range(first, first + count):
             try:
-                Monkey(seed, Path(name)).run(actions)
+                Monkey(seed, folder).run(actions)
             except Exception:
                 wrong += 1
                 print(f"windows, seed {seed}:\n{traceback.format_exc()}", flush=True)

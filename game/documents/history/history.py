@@ -132,11 +132,6 @@ class History:
         """True if there is something to repeat."""
         return len(self._undone) > 0
 
-    def redo_all(self) -> None:
-        """Repeat all that was taken back."""
-        while self.redo():
-            pass
-
     def forget_undone(self) -> None:
         """Forget what could be repeated, as an edit does."""
         self._undone.clear()

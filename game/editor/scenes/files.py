@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import time
-from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 from pinjoint.components.form import FILE_NAME, Box, Form, Tile
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.documents import library, models
-from pinjoint.documents.previews import LARGEST_SOLVED, has_moved, preview, solved
+from pinjoint.documents.previews import preview
 from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.systems.base import Phase, System
@@ -25,15 +23,14 @@ class FileScene(FormScene):
     def __init__(self) -> None:
         super().__init__()
         self._unread: list[Tile] = []
-        self._unsolved: list[Tile] = []  # whose pictures could show forces that take longer to find
 
     def exit(self, context: Context) -> None:
         super().exit(context)
-        self._unread, self._unsolved = [], []
+        self._unread = []
 
     def new_form(self, heading: str, name: str, tiles: list[Tile], accept: str) -> Form:
         """A form with a box for the name, a button, and tiles whose pictures are to be read later."""
-        self._unread, self._unsolved = [tile for tile in tiles if not tile.symbol], []
+        self._unread = [tile for tile in tiles if not tile.symbol]
         box = Box(tr("name"), "name", name, opened=name, accepts=FILE_NAME)
         return Form(heading, accept=accept, boxes=[box], tiles=tiles)
 
@@ -90,21 +87,14 @@ class FileScene(FormScene):
     # --- pictures ----------------------------------------------------------------------------------
 
     def busy(self, context: Context) -> bool:
-        return bool(self._unsolved) or self._next_unread(context) is not None
+        return self._next_unread(context) is not None
 
     def read_pictures(self, context: Context) -> None:
-        """Read the next missing pictures among the visible tiles, few in a frame so that typing stays fluent.
-
-        Once all are there, forces are found for small structures that never moved, one in a frame.
-        """
+        """Read the next missing pictures among the visible tiles, few in a frame so that typing stays fluent."""
         until = time.perf_counter() + READING
-        if self._unsolved and self._next_unread(context) is None:
-            _solve(self._unsolved.pop(0))
         while (tile := self._next_unread(context)) is not None:
             self._unread.remove(tile)
             _read_picture(tile)
-            if isinstance(tile.source, Path) and tile.picture is not None and not has_moved(tile.picture):
-                self._unsolved.append(tile)
             if time.perf_counter() >= until:
                 break
 
@@ -132,21 +122,13 @@ class Pictures(System):
             scene.read_pictures(frame.session)
 
 
-def saved_models() -> list[Tile]:
+def saved_models(section: str) -> list[Tile]:
     """The person's own models, the newest first."""
     return [
-        Tile(tr("Saved models"), name, library.written_age(p), name, p)
+        Tile(section, name, library.written_age(p), name, p)
         for p in library.saved()
         if (name := models.name_of(p))
     ]
-
-
-def _solve(tile: Tile) -> None:
-    """Let a picture show forces, if it is of a small structure that never moved."""
-    with suppress(OSError, models.ModelError):
-        found = solved(tile.source) if tile.picture.rods.count <= LARGEST_SOLVED else None
-        if found is not None:
-            tile.picture = found
 
 
 def _read_picture(tile: Tile) -> None:
@@ -174,7 +156,9 @@ class Save(FileScene):
 
     def make_form(self, context: Context) -> Form:
         self._confirmed = ""
-        form = self.new_form(tr("Save"), context.document.file.name, saved_models(), tr("Save"))
+        form = self.new_form(
+            tr("Save"), context.document.file.name, saved_models(tr("Saved models")), tr("Save")
+        )
         form.boxes[0].explanation = tr("A file in {folder}", folder=library.models_folder())
         return form
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 from pinjoint.components.form import Form, Tile
@@ -155,7 +154,7 @@ def _yours(context: Context) -> list[Tile]:
     ]
     if offers:
         offers.append(Tile(tr(YOURS), tr("Discard"), tr("unsaved work"), "", DISCARD, symbol="×"))
-    offers += [replace(offer, section=tr(YOURS)) for offer in saved_models()]
+    offers += saved_models(tr(YOURS))
     count = sum(offer.source is not DISCARD for offer in offers)
     everything = Tile(
         tr(YOURS), tr("All {count}", count=count), tr("your models"), "", ALL, symbol="»", rest=True

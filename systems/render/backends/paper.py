@@ -210,30 +210,27 @@ def _fitting(cells: Sequence[Sequence[str]], whole: float) -> list[list[int]]:
 def matrices(parts: Sequence[str | Sequence[Sequence[str]]], layout: Layout) -> Block:
     """Matrices and signs in one line, such as [δ]{X} + {δ₀} = {0}: a list of rows for each matrix, a text for each sign."""
 
-    def made(size: float) -> Block:
+    def made(size: float) -> Table:
         cells: list[Any] = []
-        widths: list[float] = []
-        for part in parts:
+        style = [("FONT", (0, 0), (-1, -1), REGULAR, size, size), ("VALIGN", (0, 0), (-1, -1), "MIDDLE")]
+        style += _padded(_BESIDE, 0)
+        for at, part in enumerate(parts):
             if isinstance(part, str):
                 cells.append(part)
-                widths.append(stringWidth(part, REGULAR, size) + 2 * _BESIDE)
+                style.append(("RIGHTPADDING", (at, 0), (at, 0), 2 * _BESIDE))
                 continue
-            numbers = [
-                max(stringWidth(cell, REGULAR, size) for cell in column) for column in zip(*part, strict=True)
-            ]
-            columns = [_BRACKET, *(width + 2 * _BESIDE for width in numbers), _BRACKET]
+            columns = [_BRACKET, *[None] * len(part[0]), _BRACKET]
             matrix = Table([["", *row, ""] for row in part], colWidths=columns, rowHeights=1.4 * size)
             matrix.setStyle(_in_brackets(size))
             cells.append([matrix])
-            widths.append(sum(columns) + _BESIDE)
-        line = Table([cells], colWidths=widths, hAlign="LEFT", spaceBefore=3, spaceAfter=3)
-        font = ("FONT", (0, 0), (-1, -1), REGULAR, size, size)
-        line.setStyle([font, ("VALIGN", (0, 0), (-1, -1), "MIDDLE"), *_padded(0, 0)])
-        return sum(widths), [line]
+        line = Table([cells], hAlign="LEFT", spaceBefore=3, spaceAfter=3)
+        line.setStyle(style)
+        return line
 
     size = max(0.92 * layout.size, _LEAST)
-    block = made(size)
-    return block if block[0] <= WIDTH else made(size * WIDTH / block[0])
+    line = made(size)
+    line = line if line.minWidth() <= WIDTH else made(size * WIDTH / line.minWidth())
+    return line.minWidth(), [line]
 
 
 def _in_brackets(size: float) -> list[tuple[Any, ...]]:
@@ -243,6 +240,7 @@ def _in_brackets(size: float) -> list[tuple[Any, ...]]:
         ("ALIGN", (0, 0), (-1, -1), "RIGHT"),
         ("VALIGN", (0, 0), (-1, -1), "MIDDLE"),
         *_padded(0, 0),
+        ("LEFTPADDING", (1, 0), (-2, -1), _BESIDE),
         ("RIGHTPADDING", (1, 0), (-2, -1), _BESIDE),
     ]
     for column, upright in ((0, "LINEBEFORE"), (-1, "LINEAFTER")):

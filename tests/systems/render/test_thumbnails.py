@@ -7,7 +7,7 @@ import pytest
 from pinjoint import Session
 from pinjoint.components.camera import Viewport
 from pinjoint.documents import models
-from pinjoint.documents.previews import preview, solved
+from pinjoint.documents.previews import preview
 from pinjoint.systems.render.marks import Bars
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.thumbnails import extent, thumbnail
@@ -33,8 +33,7 @@ def test_forces_are_shown_in_colour() -> None:
 
 def test_a_model_that_never_moved_shows_forces_of_linear_theory(tmp_path: Path) -> None:
     models.save(models.parse(triangle()), tmp_path / "mine.json")
-    shown = solved(tmp_path / "mine.json")
-    assert shown is not None
+    shown = preview(tmp_path / "mine.json")
     assert shown.rods["BC"].axial_force == pytest.approx(-197.99, abs=0.01)
     assert not shown.particles.displacement.any()
 
@@ -45,18 +44,3 @@ def test_a_model_that_was_run_shows_the_forces_with_which_it_was_saved(tmp_path:
     session.save(tmp_path / "mine.json")
     shown = preview(tmp_path / "mine.json")
     assert shown.rods["BC"].axial_force == pytest.approx(session.rods["BC"].axial_force)
-    assert solved(tmp_path / "mine.json") is None
-
-
-def test_pictures_are_there_before_forces_that_take_longer(data: Path) -> None:
-    session = Session.open(triangle())
-    (data / "models").mkdir(parents=True)
-    session.save(data / "models" / "mine.json")
-    session.press("d")
-    tiles = session.scenes.active.form.tiles  # type: ignore[attr-defined]
-    seen = []
-    while session.busy:
-        session.frame(0.01)
-        seen.append([tiles[0].picture is not None and tiles[0].picture.rods.axial_force.any(), len(seen)])
-    assert not seen[0][0]
-    assert seen[-1][0]
