@@ -8,8 +8,8 @@ from pinjoint.editor.context import Context
 from pinjoint.systems.input.actions import ACTIONS, FORMS, LIVE, MENU
 from pinjoint.systems.render.picture import hits_at
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.controls import SLIDER
 from pinjoint.systems.render.ui.menu import pointed_at
-from pinjoint.systems.render.ui.sliders import SLIDER
 
 BUTTONS = ("click", "ctrl+click", "double click", "drag", "ctrl+drag", "right click")
 WHEEL = ("wheel up", "wheel down")

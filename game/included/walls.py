@@ -13,6 +13,7 @@ from pinjoint.components.language import marked
 from pinjoint.components.tags import Hovered
 from pinjoint.mods import App
 from pinjoint.systems.render.clip import clip_segments
+from pinjoint.systems.render.labels.nearness import LINE
 from pinjoint.systems.render.labels.occupancy import STRONG
 from pinjoint.systems.render.labels.placing import Label
 from pinjoint.systems.render.marks import Discs, Mark, Points, Rows, Strokes
@@ -62,7 +63,7 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
     width = WIDTH * sheet.unit
     start, end, rows = clip_segments(ends[:, 0], ends[:, 1], low - 2 * width, high + 2 * width)
     sheet.occupancy.line(start, end, STRONG)
-    sheet.occupancy.parts.lines(("walls", rows), start, end, width / 2)
+    sheet.occupancy.parts.add(("walls", rows), start, end, width / 2, kind=LINE)
     selected, hovered = (sheet.tagged(tag, "walls") for tag in (Selected, Hovered))
     for which, halo in ((hovered, sheet.theme.hover), (selected, sheet.theme.selected)):
         chosen = sheet.chosen(which, rows)

@@ -37,12 +37,11 @@ from pinjoint.systems.render.model.supports import draw_supports, support_sides
 from pinjoint.systems.render.model.tools import draw_flashes, draw_preview
 from pinjoint.systems.render.model.utilisation import shade_rods
 from pinjoint.systems.render.theme import Theme, load_theme
-from pinjoint.systems.render.ui.empty_card import put_card
+from pinjoint.systems.render.ui.controls import put_controls
 from pinjoint.systems.render.ui.form import compose_form
 from pinjoint.systems.render.ui.layout import Paper
 from pinjoint.systems.render.ui.lesson_card import compose_lesson
 from pinjoint.systems.render.ui.overlays import (
-    BAR,
     draw_notice,
     draw_overlays,
     draw_scale,
@@ -52,7 +51,6 @@ from pinjoint.systems.render.ui.overlays import (
 from pinjoint.systems.render.ui.page import draw_page
 from pinjoint.systems.render.ui.pointed import draw_pointed
 from pinjoint.systems.render.ui.readouts import put_readouts
-from pinjoint.systems.render.ui.sliders import SLIDER, put_sliders
 from pinjoint.systems.render.ui.toolbar import compose_toolbar
 
 REACH = 6.0  # points from the lines of an arrow
@@ -116,19 +114,8 @@ def hits_at(model: Model | Form | Toolbar, view: View, theme: Theme, pixel: Vect
     if not isinstance(model, Model) or view.card is not None or panels:
         paper.hits += compose(model, view, theme).hits
     else:
-        _put_controls(paper, model, view, theme)
+        put_controls(paper, model, view, theme)
     return [hit for hit in paper.hits if hit.contains(pixel)]
-
-
-def _put_controls(paper: Paper, model: Model, view: View, theme: Theme) -> None:
-    """What can be pressed over a model wherever that is: the status bar, sliders, the card of an empty model."""
-    v, high = view.canvas, BAR * view.pixel_ratio
-    if view.page is None:
-        if not view.caption:  # one of several models has no status bar
-            paper.hits.append(Hit(v.left, v.bottom - high, v.width, high, ""))
-        wheel, places = ("slider up", "slider down"), view.slider_places  # a slider knows its button
-        paper.hits += [Hit(*place.box, SLIDER, item=place, wheel=wheel, again=True) for place in places]
-    put_card(paper, model, view, theme)
 
 
 def _draw_structure(sheet: Sheet) -> None:
@@ -180,8 +167,7 @@ def _composed(sheet: Sheet) -> Picture:
     put_readouts(paper, sheet, room)
     overlays += draw_notice(sheet, room)
     scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
-    put_sliders(paper, sheet.view, theme)
-    _put_controls(paper, model, sheet.view, theme)
+    put_controls(paper, model, sheet.view, theme)
     preview = draw_preview(sheet)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
     over = [

@@ -56,22 +56,20 @@ class Parts:
         self._outlines: _Pieces  # of the bands that are seen, without their width
         self._squares: _Squares
 
-    def lines(self, of: Owners, start: Points, end: Points, half: float) -> None:
-        """Add lines from `start` to `end`, each (n, 2), of half that width."""
-        self._add(of, start, end, np.zeros_like(start), np.full(len(start), half), LINE)
-
-    def diagrams(self, of: Owners, start: Points, end: Points, rise: Points) -> None:
-        """Add rectangles on lines from `start` to `end`, `rise` high, each (n, 2)."""
-        self._add(of, start, end, rise, np.zeros(len(start)), DIAGRAM)
-
-    def symbols(self, of: Owners, start: Points, end: Points, half: float | Values) -> None:
-        """Add arrows and the like, all within `half` of the line from `start` to `end`, a point for circles."""
-        wide = np.broadcast_to(np.asarray(half, dtype=np.float64), len(start))
-        self._add(of, start, end, np.zeros_like(start), wide, SYMBOL)
-
-    def _add(self, of: Owners, start: Points, end: Points, rise: Points, half: Values, kind: int) -> None:
+    def add(
+        self,
+        of: Owners,
+        start: Points,
+        end: Points,
+        half: float | Values = 0.0,
+        rise: Points | float = 0.0,
+        kind: int = SYMBOL,
+    ) -> None:
+        """Add what lies within `half` of lines from `start` to `end`, each (n, 2), or up to `rise` to one side of them."""
         codes = self.code((of[0], 0)) + np.asarray(of[1], dtype=np.int64)
-        self._kept.append(_Bands(start, end, rise, half, codes, np.full(len(start), kind)))
+        wide = np.broadcast_to(np.asarray(half, dtype=np.float64), len(start))
+        high = np.broadcast_to(np.asarray(rise, dtype=np.float64), start.shape)
+        self._kept.append(_Bands(start, end, high, wide, codes, np.full(len(start), kind)))
 
     def code(self, key: Owner | None) -> int:
         """What stands for a key in the arguments of the others."""

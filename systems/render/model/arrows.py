@@ -187,7 +187,7 @@ def draw_arrows(
     sheet.occupancy.line(tail, tip, STRONG)
     barb = 0.5 * head * across
     for ends in ((tail, tip), (neck - barb, neck + barb)):
-        sheet.occupancy.parts.symbols((kind, which[seen]), *ends, u)
+        sheet.occupancy.parts.add((kind, which[seen]), *ends, u)
     points = np.stack([tip, neck + barb, neck - barb], axis=1)
     of = of if isinstance(of, list) else [(of[0], row) for row in of[1].tolist()]
     tables, rows = np.array([table for table, _ in of])[seen], np.array([row for _, row in of])[seen]

@@ -19,7 +19,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.tags import DiagramShown, Selected
 from pinjoint.components.view import MARGIN
 from pinjoint.systems.render.clip import clip_segments
-from pinjoint.systems.render.labels.nearness import ranges
+from pinjoint.systems.render.labels.nearness import DIAGRAM, ranges
 from pinjoint.systems.render.labels.occupancy import FAINT
 from pinjoint.systems.render.labels.placing import ANCHORS
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Points, Rows, Strokes, Truths, Values
@@ -331,7 +331,8 @@ def _draw_areas(sheet: Sheet, name: str, diagram: _Diagram, heights: Values, dra
         higher = np.abs(heights[:, :-1]) > np.abs(heights[:, 1:])
         rise = np.where(higher[..., None], rise[:, :-1], rise[:, 1:])
     pieces = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2), rise.reshape(-1, 2)
-    sheet.occupancy.parts.diagrams(("rods", np.repeat(rows, points.shape[1] - 1)), *pieces)
+    of = "rods", np.repeat(rows, points.shape[1] - 1)
+    sheet.occupancy.parts.add(of, *pieces[:2], rise=pieces[2], kind=DIAGRAM)
 
 
 def _colour(sheet: Sheet, name: str) -> Colour:

@@ -50,7 +50,7 @@ def draw_hinges(sheet: Sheet) -> None:
     at = sheet.centres[joint] + (sheet.radii[joint] + (_HINGE + 0.5) * u)[:, None] * out
     radius = np.full(len(at), _HINGE * u)
     sheet.marks.append(Discs(at, radius, sheet.theme.ink, sheet.theme.hollow, RIM * u, ("rods", rows)))
-    sheet.occupancy.parts.symbols(("rods", rows), at, at, radius)
+    sheet.occupancy.parts.add(("rods", rows), at, at, radius)
     sheet.occupancy.block_squares(at, radius)
     sheet.explain("hinge", at, at)
 
@@ -214,7 +214,7 @@ def draw_arcs(
     tip, barb = neck + head[:, None] * forward, 0.5 * head[:, None] * across
     sheet.occupancy.line(first, last, STRONG)
     for parts in ((first, last, every), (neck - barb, neck + barb, rows), (neck, tip, rows)):
-        sheet.occupancy.parts.symbols((key, parts[2]), *parts[:2], u)
+        sheet.occupancy.parts.add((key, parts[2]), *parts[:2], u)
     sheet.marks += [
         Strokes(first, last, 1.75 * u, colour, (table, every)),
         Fills(np.stack([tip, neck + barb, neck - barb], axis=1), colour, (table, rows)),

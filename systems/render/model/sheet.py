@@ -149,20 +149,6 @@ class Sheet:
         marked[wanted] = True
         return marked[rows]
 
-    def colours_of(
-        self, rows: Rows, layers: Iterable[tuple[Rows, Colour]], otherwise: Colour
-    ) -> list[tuple[Colour, Truths | slice]]:
-        """Rows grouped by colour: each colour with the mask of its rows, or all; later layers win."""
-        layers = [(wanted, colour) for wanted, colour in layers if len(wanted)]
-        if not layers:
-            return [(otherwise, slice(None))] if len(rows) else []
-        choice = np.zeros(len(rows), dtype=np.int64)
-        colours = [otherwise]
-        for wanted, colour in layers:
-            choice[self.chosen(wanted, rows)] = len(colours)
-            colours.append(colour)
-        return [(colour, choice == index) for index, colour in enumerate(colours) if (choice == index).any()]
-
 
 def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None) -> Sheet:
     """The model in pixels. Elements at places that are not finite numbers are left out."""

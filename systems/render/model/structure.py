@@ -13,6 +13,7 @@ from pinjoint.components.tags import Hovered, Selected
 from pinjoint.components.view import Shape
 from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.framing import cut_discs
+from pinjoint.systems.render.labels.nearness import LINE
 from pinjoint.systems.render.labels.occupancy import FAINT, STRONG
 from pinjoint.systems.render.labels.placing import Label, half_size
 from pinjoint.systems.render.marks import Discs, Panel, Points, Rows, Strokes, Truths, Values
@@ -123,15 +124,19 @@ def draw_rods(sheet: Sheet) -> None:
     by_force = {"compression": sheet.pushed, "tension": sheet.pulled}
     layers = [(wanted, getattr(theme, name)) for name, wanted in by_force.items()]
     layers += [*sheet.shades, (yielding, theme.yielding)]
-    for colour, mask in sheet.colours_of(sheet.rods, layers, theme.ink):
-        wider = _SHADED if sheet.shades else 1.35 if colour == theme.yielding else 1.0
-        _draw_lines(sheet, mask, width * wider, colour)
+    colours, number = [theme.ink], np.zeros(len(sheet.rods), dtype=np.intp)  # later layers win
+    for wanted, colour in layers:
+        number[sheet.chosen(wanted, sheet.rods)] = len(colours)
+        colours.append(colour)
+    for index in np.unique(number).tolist():
+        wider = _SHADED if sheet.shades else 1.35 if colours[index] == theme.yielding else 1.0
+        _draw_lines(sheet, number == index, width * wider, colours[index])
     named = {**by_force, "yielding": yielding}
     for name, wanted in named.items():
         sheet.explain(name, *sheet.lines(sheet.chosen(wanted, sheet.rods))[:2])
     start, end, rows = sheet.lines()
     sheet.occupancy.line(start, end, STRONG)
-    sheet.occupancy.parts.lines(("rods", rows), start, end, width / 2)
+    sheet.occupancy.parts.add(("rods", rows), start, end, width / 2, kind=LINE)
 
 
 def _rod_width(sheet: Sheet) -> float:
@@ -139,7 +144,7 @@ def _rod_width(sheet: Sheet) -> float:
     return float(np.clip(0.12 * sheet.rod_length / sheet.unit, 0.5, 2.5)) * sheet.unit
 
 
-def _draw_lines(sheet: Sheet, mask: Truths | slice, width: float, colour: Colour) -> None:
+def _draw_lines(sheet: Sheet, mask: Truths, width: float, colour: Colour) -> None:
     """The lines of some rods, of one colour; where some bend, those that bend less are thicker."""
     rods, (start, end, rows) = sheet.model.rods, sheet.lines(mask)
     cables = rods.tension_only[rows]
@@ -192,7 +197,7 @@ def draw_particles(sheet: Sheet) -> None:
         size = np.full(len(dots), _DOT * sheet.unit)
         sheet.marks.append(Discs(sheet.centres[dots], size, theme.ink, theme.ink, 0.0, ("particles", dots)))
     at, radii = sheet.centres[rows], sheet.radii[rows]
-    sheet.occupancy.parts.symbols(("particles", rows), at, at, radii)
+    sheet.occupancy.parts.add(("particles", rows), at, at, radii)
     if len(sheet.particles) <= MANY:
         sheet.occupancy.block_squares(at, 0.8 * radii)
 

@@ -86,14 +86,12 @@ def draw_supports(sheet: Sheet, sides: NDArray[np.int64]) -> None:
             apex = sheet.centres[of] + DIRECTIONS[side] * (sheet.radii[of] - sheet.unit)[:, None]
             _stamp(sheet, symbol, apex, side, of)
             middle = apex + DIRECTIONS[side] * size / 2
-            sheet.occupancy.parts.symbols(("particles", of), middle, middle, size / 2)
+            sheet.occupancy.parts.add(("particles", of), middle, middle, size / 2)
             sheet.occupancy.block_squares(middle[:MANY], np.full(len(middle[:MANY]), size / 2))
     if len(turning := rows[held[rows] & (sides[rows] == NO_SUPPORT)]):
         _stamp(sheet, "unturned", sheet.centres[turning], 0, turning)
         half = np.full(len(turning), 10.0 * sheet.unit)
-        sheet.occupancy.parts.symbols(
-            ("particles", turning), sheet.centres[turning], sheet.centres[turning], half
-        )
+        sheet.occupancy.parts.add(("particles", turning), sheet.centres[turning], sheet.centres[turning], half)
         sheet.occupancy.block_squares(sheet.centres[turning], half)
 
 

@@ -39,7 +39,6 @@ PROPERTIES = marked("Properties")  # the heading of an element's own boxes, wher
 _WIDEST, _EDGE = 1500.0, 16.0  # points that tiles spread over, and around all
 _SECTION, _READING, _GAP = 28.0, 20.0, 10.0  # points: of a heading, of a result, between boxes
 _MOST_READINGS = 0.4  # share of the height that results take without being scrolled
-_NARROW = 120.0  # points: a box less wide does not share its row
 _TILE, _TILE_GAP, _CAPTION, _PROPORTION = (
     172.0,
     16.0,
@@ -286,7 +285,7 @@ def _box_lines(form: Form, width: float, u: float) -> Iterator[_Line]:
         own = section == form.heading
         title = PROPERTIES if own and len(form.readings) else "" if own else section
         for (_, short), some in groupby(those, lambda box: (box.vector, is_short(box, half, u))):
-            columns = 2 if short and half >= _NARROW * u else 1
+            columns = 1 + short
             for row in in_rows(list(some), columns):
                 yield _Line(title, row, columns)
                 title = ""
