@@ -13,8 +13,6 @@ from pinjoint.components.model import Model
 from pinjoint.components.obstacles import Floats, any_obstacles, obstacles
 from pinjoint.systems.base import Integrator, StepSystem
 
-REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
-
 
 class Collision(StepSystem):
     """Impacts between discs, detected at their exact times.
