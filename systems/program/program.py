@@ -131,8 +131,7 @@ class Program:
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self.failure: ProgramError | None = None
         self._state_revision = -1
-        written = [path for b in self._writer.commits for path in b.system.writes]
-        self._changes = _by_table_and_role(model, (*self.motion, *written))
+        self._changes = _by_table_and_role(model, (*self.motion, *self._writer.written.values()))
         self.bind()
         present = weakref.ref(self)  # the module lives longer
         self.module.warm_up = lambda: program._call_all() if (program := present()) is not None else None
@@ -203,8 +202,7 @@ class Program:
         for system in self.systems:
             if type(system).arrays is not StepSystem.arrays:
                 extra.update(bind(system, model).stored_arrays)
-        written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
-        extra |= {name: self._storage(path) for name, path in written.items()}
+        extra |= {name: self._storage(path) for name, path in self._writer.written.items()}
         extra |= self._arranged(extra)
         self._near = NearPairs(model, [b.cutoff for b in self._writer.pairs]) if self._writer.pairs else None
         extra |= self._near.arrays if self._near is not None else {}

@@ -69,11 +69,11 @@ class ReorderedProgram(Program):
         self._places = {"particles": self.layout.particles, "rods": self.layout.rods}
         self._held: dict[str, tuple[Column, Numbers, Column]] = {}
         super().bind()
-        written = [path for b in self._writer.commits for path in b.system.writes]
-        self._of_state = [self._held[path] for path in (*self.motion, *written)]
+        written = self._writer.written
+        self._of_state = [self._held[path] for path in (*self.motion, *written.values())]
         derived = (f"{table}.{name}" for table, names in OBSERVED.items() for name in names)
         self._derived = [self._held[path] for path in derived if path in self._held]
-        to_write = {*PUSHED, *(path.replace(".", "_", 1) for path in written)}
+        to_write = {*PUSHED, *written}
         columns = self.columns.items()
         self._columns = [array if name in to_write else read_only(array) for name, array in columns]
         self._bind_arguments()
