@@ -43,9 +43,6 @@ from pinjoint.systems.run.sleep import Sleep
 from pinjoint.systems.run.step_size import StepSize, begin_steps
 from pinjoint.systems.schedule import Plan, Schedule
 
-# Of the clock, as a run begins.
-CHOSEN = ("step_size", "guard_energy", "largest_imbalance", "initial_energy", "potential_reference")
-
 # Messages of runs that diverged, and of one that does not get on.
 UNRESOLVED = marked(
     "The simulation diverged near t = {time}: no time step, however small, leads on from there."
@@ -255,7 +252,8 @@ class Simulation:
 
     def start_anew(self) -> None:
         """Begin a new run with a state from before edits."""
-        for name in CHOSEN:
+        chosen = "step_size", "guard_energy", "largest_imbalance", "initial_energy", "potential_reference"
+        for name in chosen:
             self.model.writable(f"clock.{name}")[0] = 0.0
         self.stay()
         self.forget()
