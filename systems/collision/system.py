@@ -20,7 +20,7 @@ class Collision(StepSystem):
     """Impacts between discs, detected at their exact times.
 
     It declares that it acts at instants (`impulsive`), between the steps of an integrator, which then end at impacts
-    (driven/stepper.py); a plan whose systems all leave flight exact needs no integrator (free/flight.py).
+    (run/program_steps.py); a plan whose systems all leave flight exact needs no integrator (free/flight.py).
     """
 
     name = "collision.discs"

@@ -65,7 +65,7 @@ def run(on: int, steps: int = 700, *, compiled: bool = False) -> Session:
         patch.setenv(CORES, str(on))
         session = Session.open(net())
         if compiled:
-            session.simulation.program.load()
+            session.simulation.program.module.load()
         assert session.run(steps=steps) == "time reached"
     return session
 
