@@ -498,14 +498,12 @@ class World:
     # A tag is an array of esper ids: esper takes a microsecond for each component, and all elements of a large model may
     # carry one.
 
-    def tag(self, handle: Handle, tag: type) -> None:
-        """Let an existing entity carry a tag, such as Selected."""
-        if handle.exists:
-            self._carry(tag, self._carriers(tag) | self._flags([handle]))
-
     def tag_only(self, handles: Iterable[Handle], tag: type) -> None:
-        """Let exactly these entities, those of them that exist, carry a tag."""
-        self._carry(tag, self._flags(handles) & (self.row_of_entity >= 0))
+        """Let exactly these entities, those of them that exist, carry a tag, such as Selected."""
+        wanted = self._flags(handles) & (self.row_of_entity >= 0)
+        if (self._carriers(tag) != wanted).any():
+            self._tagged[tag] = np.flatnonzero(wanted)
+            self.tags_revision = self.next_revision()
 
     def _flags(self, handles: Iterable[Handle]) -> NDArray[np.bool_]:
         """For each esper id, whether it is that of one of these entities."""
@@ -514,12 +512,6 @@ class World:
     def _carriers(self, tag: type) -> NDArray[np.bool_]:
         """For each esper id, whether that entity, which may be deleted, carries a tag."""
         return flags(self._tagged.get(tag, []), len(self.row_of_entity))
-
-    def _carry(self, tag: type, wanted: NDArray[np.bool_]) -> None:
-        """Let exactly the entities whose flags are true carry a tag."""
-        if (self._carriers(tag) != wanted).any():
-            self._tagged[tag] = np.flatnonzero(wanted)
-            self.tags_revision = self.next_revision()
 
     def tagged(self, tag: type) -> list[Handle]:
         """Handles of the existing entities with a tag, in order of creation."""

@@ -266,7 +266,7 @@ def problem_of(job: Job, document: bytes) -> str:
         if job[0] in UNITS:
             UNITS[job[0]].load()
         else:
-            make_program(*parts_of(job, document)).load()
+            make_program(*parts_of(job, document)).module.load()
     except Exception as error:  # numba raises many kinds
         return in_a_line(error)
     return cache.TROUBLE[0].partition(". ")[0] if cache.TROUBLE else ""

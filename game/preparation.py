@@ -203,8 +203,7 @@ class Preparation(System):
             simulation.armed_revision if armed else model.newest(Role.DOCUMENT, Role.STATE),
         )
         if seen != self._worked[0]:
-            collides = any(system.impulsive for system in simulation.plan)
-            self._worked = seen, work_ahead(model) if collides else (0, 0)
+            self._worked = seen, work_ahead(model) if simulation.programs.collides else (0, 0)
         parting, impacts = self._worked[1]
         return 0 if armed else parting, impacts
 
@@ -237,7 +236,7 @@ def _jobs_of(simulation: Simulation) -> list[Job]:
         piles = any(isinstance(system, Law) for system in plan) or model.particles.constant_force.any()
         return [(unit.name,) for unit in (EVENTS, HORIZONS, *([PILES] if piles else []))]
     jobs = [_job(simulation, plan)]
-    if any(system.impulsive for system in plan):  # particles that do not fly free may meet
+    if simulation.programs.collides:  # particles that do not fly free may meet
         jobs.append((DRIVEN.name,))
     return jobs
 

@@ -258,7 +258,7 @@ class Session(Headless):
         self.notice = joined([*problems, said])
         scene = self.scenes.active
         if isinstance(scene, FileScene):
-            scene.say(self.notice)
+            scene.form.message = self.notice
         self.offer_tools()
 
     def _open_file(self, path: Path) -> None:

@@ -30,6 +30,7 @@ from pinjoint.scripts.script import Script
 from pinjoint.systems.base import Mod
 from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.edit.pull import Pull
+from pinjoint.systems.forms.properties import heading
 from pinjoint.systems.render.model.sheet import Stage
 from pinjoint.systems.run.energy import Energy
 from pinjoint.systems.run.simulation import Simulation
@@ -448,9 +449,13 @@ class Context:
         """Select exactly these elements; none: deselect."""
         self.model.tag_only(handles, Selected)
 
-    def name(self, handle: Handle) -> str:
-        """An element as a sentence begins with it, such as "Rod AB"."""
-        return begun(self.model.describe(handle))
+    def name(self, *elements: Handle) -> str:
+        """Some elements as a sentence begins with them, such as "Rod AB"."""
+        return begun(heading(self.model, elements))
+
+    def tell(self, value: str, *elements: Handle) -> None:
+        """Let the notice say what elements have now."""
+        self.notice = tr("{element}: {value}", element=self.name(*elements), value=value)
 
     @property
     def clipboard(self) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from pinjoint.components.bent import AXIAL, MOMENT, SHEAR
+from pinjoint.components.bent import MOMENT
 from pinjoint.components.field import LARGEST, SMALLEST, Column, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
@@ -17,6 +17,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends, rigid_joints
 from pinjoint.components.round_numbers import round_down
+from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.table import Table
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import THESIS, View
@@ -123,7 +124,6 @@ class Guide:
         self.refusal = ""
         self.mechanism: Mechanism | None = None
         self.axis_wanted: Particle | None = None
-        self._tables: Tables | None = None
         self.quantity = MOMENT
         real = solve(model, [])
         self.count = Count.of(model)
@@ -148,8 +148,7 @@ class Guide:
 
     def next_quantity(self) -> None:
         """Show diagrams of M, V or N in all sets of a frame."""
-        order = (MOMENT, SHEAR, AXIAL)
-        self.quantity = order[(order.index(self.quantity) + 1) % len(order)]
+        self.quantity = DIAGRAMS[(DIAGRAMS.index(self.quantity) + 1) % len(DIAGRAMS)]
         for one in self.sets:
             one.view.quantity = self.quantity
 
@@ -157,9 +156,7 @@ class Guide:
     def tables(self) -> Tables:
         """The tables of the solution."""
         assert self.solution is not None
-        if self._tables is None or self._tables.solution is not self.solution:
-            self._tables = Tables(self.model, self.solution)
-        return self._tables
+        return Tables(self.model, self.solution)
 
     @property
     def clamp_wanted(self) -> bool:

@@ -184,7 +184,7 @@ class App:
                 name,
                 act,
                 while_drawing=True,
-                draws=lambda context, pixel: drawing().begin_anywhere(context, pixel),
+                draws=lambda context, pixel: drawing().begin(context, pixel),
                 hint=hint,
             )
         )

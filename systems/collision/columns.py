@@ -22,6 +22,7 @@ Arrays = TypeVar("Arrays")
 EPSILON = sys.float_info.epsilon
 SPEED_NOISE = 16.0 * EPSILON  # round-off of a speed, as a share of the speeds that it is computed from
 NONE = -1  # no entry, no member
+REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
 DIRECT = 48  # contacts up to which a projection is solved directly; larger groups are solved by sweeps
 SHARED_START, SHARED_END = 1.0, 2.0  # flags of Disc.SHARED
 # shortest step of piles and crowds, where discs are fast, as a share of the longest
@@ -123,16 +124,13 @@ class Queue(NamedTuple):
 
 
 class Constraints(NamedTuple):
-    """Pairs that cannot have an impact: pairs that never collide, and persistent contacts.
+    """Pairs that cannot have an impact: persistent contacts.
 
-    The discs that never collide with disc i are partners[first[i] : first[i + 1]]. The persistent contacts of disc i
-    are a chain of entries from first_persistent[i]: persistent, shape (capacity, 2), holds the columns of Entry,
-    forces the force, N. A persistent contact is entered for each of its discs that is not held. Unused entries
+    Those of disc i are a chain of entries from first_persistent[i]: persistent, shape (capacity, 2), holds the columns of
+    Entry, forces the force, N. A persistent contact is entered for each of its discs that is not held. Unused entries
     are chained from counts[Count.SPARE].
     """
 
-    first: Integers
-    partners: Integers
     first_persistent: Integers
     persistent: Integers
     forces: Floats
@@ -154,14 +152,6 @@ class Constraints(NamedTuple):
         counts[Count.SPARE] = old
         counts[Count.SPARES] += size - old
         return self._replace(persistent=persistent, forces=forces)
-
-
-def partners_of(n: int, joined: Any) -> tuple[Integers, Integers]:
-    """`first` and `partners` of Constraints: of n discs, of which these pairs never collide."""
-    pairs = np.asarray(joined, dtype=np.int64).reshape(-1, 2)
-    ends = np.concatenate([pairs, pairs[:, ::-1]])
-    ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
-    return np.searchsorted(ends[:, 0], np.arange(n + 1)), np.ascontiguousarray(ends[:, 1])
 
 
 class Entry(Places):
@@ -330,7 +320,6 @@ class Number(Places):
     CELL = auto()  # size of the cells of the grid's finest layer, m
     CROWDING = auto()  # neighbours found per area of boxes, 1/m²
     RESTITUTION = auto()  # the least of all
-    REST_HEIGHT = auto()  # of the smaller radius; bounces that would rise less end in contact
     SMALLEST = auto()  # radius of the smallest disc, m
     STEP_LENGTH = auto()  # of the steps of piles, s; ∞ where nothing is pulled
     STEP_END = auto()  # end of the present step, s

@@ -120,9 +120,6 @@ def part_overlaps(model: Model) -> Generator[None, None, str]:
     """
     particles, others, among = model.particles, obstacles(model), _colliding(model)
     displacement = particles.displacement.copy()
-    touching = near_pairs(particles.position + displacement, particles.radius, others)
-    if not among(touching).any():
-        return ""
     overlapping = overlaps(particles.position + displacement, particles.radius, others)
     overlapping = overlapping[among(overlapping)]
     count = len(overlapping)

@@ -13,14 +13,12 @@ from pinjoint.components.model import Model
 from pinjoint.components.obstacles import Floats, any_obstacles, obstacles
 from pinjoint.systems.base import Integrator, StepSystem
 
-REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
-
 
 class Collision(StepSystem):
     """Impacts between discs, detected at their exact times.
 
     It declares that it acts at instants (`impulsive`), between the steps of an integrator, which then end at impacts
-    (driven/stepper.py); a plan whose systems all leave flight exact needs no integrator (free/flight.py).
+    (run/program_steps.py); a plan whose systems all leave flight exact needs no integrator (free/flight.py).
     """
 
     name = "collision.discs"

@@ -255,13 +255,14 @@ class GeneratedModule:
 
         self._patience = LOADING
         _interpreted.append(self)
-        self._form = SimpleNamespace(
-            is_machine=False, **self._ended({name: timed(function) for name, function in interpreted.items()})
-        )
+        functions = {name: timed(function) for name, function in interpreted.items()}
+        self._form = self._form_of(functions, is_machine=False)
 
-    def _ended(self, functions: dict[str, Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
-        """The functions, which end the process where a kernel that others wrote never returns."""
-        return {name: ending(f, self.others) for name, f in functions.items()} if self.others else functions
+    def _form_of(self, functions: dict[str, Callable[..., Any]], *, is_machine: bool) -> SimpleNamespace:
+        """A form of the functions, which end the process where a kernel that others wrote never returns."""
+        if self.others:
+            functions = {name: ending(function, self.others) for name, function in functions.items()}
+        return SimpleNamespace(is_machine=is_machine, **functions)
 
     def did(self, work: int) -> None:
         """Note how much the last call did, interpreted, so that the next one takes about LONGEST_CALL."""
@@ -319,14 +320,11 @@ class GeneratedModule:
 
             for name, function in (machine := self._machine()).items():
                 compile_for(function, kept, name)
-            self._form, self._compiled = self._form_of(machine), True
+            self._form, self._compiled = self._form_of(machine, is_machine=True), True
             Choice.changes += 1
             with contextlib.suppress(OSError):
                 os.utime(self._kept)  # it was used
             return True
-
-    def _form_of(self, machine: dict[str, Callable[..., Any]]) -> SimpleNamespace:
-        return SimpleNamespace(is_machine=True, **self._ended(machine))
 
     def _machine(self) -> dict[str, Callable[..., Any]]:
         """The functions, to be compiled when they are called."""
@@ -340,7 +338,7 @@ class GeneratedModule:
         from pinjoint.systems.program.machine_code import types_of
 
         before, machine = self._form, self._machine()
-        self._form, self._compiled = self._form_of(machine), True
+        self._form, self._compiled = self._form_of(machine, is_machine=True), True
         Choice.changes += 1
         try:
             self.warm_up()

@@ -111,9 +111,13 @@ class Program:
 
     source: the whole program as plain Python; to understand a step, read that of a small model first.
     measures: entries of Measure, of the state last observed.
+    form: FEW, MANY or VERY_MANY: see writer.py. columns: what its functions end with, by name, in order.
     follows_state: forces follow from nothing but the state, loads and contacts apart, so that what is at rest stays so.
+    lasting: the name of a system that changes with time, whether anything moves or not; "" if there is none.
+    resists_motion: something depends on velocity: dampers or drag. watches_events: it stops where the quantity of an Event
+    changes sign.
     failure: what a kernel raised in a step, and which, if one did.
-    impulsive: the systems without a kernel that act by impacts. between: what acts between its steps.
+    plan: the step systems that it was asked for. between: what acts between its steps.
     module: its functions. tolerance: of each step; 0 where the error is not controlled.
     compile_seconds: time that writing it took, and compiling it, or loading it from the cache, if that was done at once.
     """
@@ -121,18 +125,20 @@ class Program:
     def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
         started = time.perf_counter()
         self.model = model
-        self.systems = tuple(system for system in systems if system.kernel)
-        self.impulsive = tuple(system for system in systems if system.impulsive and not system.kernel)
+        self.plan = tuple(systems)
         self.integrator = integrator
+        self.form = form
         self._writer = _writer(model, systems, integrator, form)
         self.between = _between(systems)
         self.module = _module(self._writer, self.between)
         self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
+        self.lasting = next((b.system.name for b in self._writer.bound if b.follows_time), "")
+        self.resists_motion = self._writer.rates
+        self.watches_events = bool(self._writer.events)
         self.failure: ProgramError | None = None
         self._state_revision = -1
-        written = [path for b in self._writer.commits for path in b.system.writes]
-        self._changes = _by_table_and_role(model, (*self.motion, *written))
+        self._changes = _by_table_and_role(model, (*self.motion, *self._writer.written.values()))
         self.bind()
         present = weakref.ref(self)  # the module lives longer
         self.module.warm_up = lambda: program._call_all() if (program := present()) is not None else None
@@ -141,10 +147,6 @@ class Program:
         if not self.module.is_loaded:
             self._call_all()
         self.compile_seconds = time.perf_counter() - started
-
-    def load(self) -> None:
-        """Go on with machine code from now on: compiled first if nobody has."""
-        self.module.load()
 
     def _call_all(self) -> None:
         """Call every function once, which makes numba compile it, or load it from the cache, if it is to be compiled."""
@@ -172,39 +174,18 @@ class Program:
         return [whole.get(name, column[:0]) for name, column in self.columns.items()]
 
     @property
-    def columns(self) -> dict[str, Column]:
-        """The columns and arrays that its compiled functions end with, by name, in order."""
-        return dict(zip(self._writer.columns, self._columns, strict=True))
-
-    @property
     def source(self) -> str:
         """The Python that it is compiled from."""
         return self._writer.source()
-
-    @property
-    def form(self) -> str:
-        """FEW, MANY or VERY_MANY: see writer.py."""
-        return self._writer.form
-
-    @property
-    def resists_motion(self) -> bool:
-        """True if something depends on velocity: dampers or drag."""
-        return self._writer.rates
-
-    @property
-    def lasting(self) -> str:
-        """The name of a system that changes with time, whether anything moves or not; "" if there is none."""
-        return next((b.system.name for b in self._writer.bound if b.follows_time), "")
 
     def bind(self) -> None:
         """Take hold of the model's columns; needed after every change of its document."""
         model = self.model
         extra: dict[str, Any] = {}
-        for system in self.systems:
-            if type(system).arrays is not StepSystem.arrays:
-                extra.update(bind(system, model).stored_arrays)
-        written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
-        extra |= {name: self._storage(path) for name, path in written.items()}
+        for b in self._writer.bound:
+            if type(b.system).arrays is not StepSystem.arrays:
+                extra.update(bind(b.system, model).stored_arrays)
+        extra |= {name: self._storage(path) for name, path in self._writer.written.items()}
         extra |= self._arranged(extra)
         self._near = NearPairs(model, [b.cutoff for b in self._writer.pairs]) if self._writer.pairs else None
         extra |= self._near.arrays if self._near is not None else {}
@@ -219,10 +200,10 @@ class Program:
             extra |= self._of_bending(extra)
         self._sides = [(b, self._sides_of(b)) for b in self._writer.events]
         extra |= {b.sides: sides for b, sides in self._sides}
-        self._columns = [
-            extra[name] if name in extra else self._column(name.replace("_", ".", 1))
+        self.columns: dict[str, Any] = {
+            name: extra[name] if name in extra else self._column(name.replace("_", ".", 1))
             for name in self._writer.columns
-        ]
+        }
         self._bind_clock()
         self.changes_end = math.inf if self.lasting else loads_end(model)
         self._breaks = np.array([*load_breaks(model), math.inf])
@@ -292,11 +273,6 @@ class Program:
             coordinates.store()
 
     # --- events ------------------------------------------------------------------------------------
-
-    @property
-    def watches_events(self) -> bool:
-        """True if it stops where the quantity of an Event changes sign."""
-        return bool(self._writer.events)
 
     def _sides_of(self, b: Bound) -> NDArray[np.uint8]:
         """Of each row of an event, whether its quantity is negative, as the state has it."""
@@ -385,17 +361,17 @@ class Program:
         known = self._arrays | given
         code = self.module.functions[entry].py_func.__code__
         names = code.co_varnames[: code.co_argcount]
-        return tuple(known[name] for name in names[names.index(first) + 1 : -len(self._columns)])
+        return tuple(known[name] for name in names[names.index(first) + 1 : -len(self.columns)])
 
     def _bind_arguments(self) -> None:
         if self.between is None:
-            self._arguments = (*self._after("loads_end", "advance"), *self._columns)
+            self._arguments = (*self._after("loads_end", "advance"), *self.columns.values())
             return
         known = self._arrays | self.columns
         copies: dict[str, Any] = {f"kept_{name}": np.zeros_like(known[name]) for name in self._writer.kept}
         copies |= {f"own_{name}": np.zeros_like(known["force"]) for name in ("acceleration", "support")}
         copies["every"] = np.arange(self._rows("particles"))
-        self._arguments = (*self._after("loads_end", "drive", **copies), *self._columns)
+        self._arguments = (*self._after("loads_end", "drive", **copies), *self.columns.values())
 
     def _bind_observed(self) -> None:
         for path in _GIVEN.values():
@@ -564,7 +540,7 @@ class Program:
             for b, sides in self._sides:
                 sides[:] = self._sides_of(b)
         if self._near is not None and self._near.grow():
-            self._columns[self._writer.columns.index("pair_list")] = self._near.arrays["pair_list"]
+            self.columns["pair_list"] = self._near.arrays["pair_list"]
             self._bind_arguments()
 
     @property
@@ -581,7 +557,7 @@ class Program:
         if self._writer.commits:
             time = float(self._control[0])
             outside = self._after("dt", "commit", account=np.zeros(len(ACCOUNT)))
-            self._ready().commit(time, 0.0, *outside, *self._columns)
+            self._ready().commit(time, 0.0, *outside, *self.columns.values())
             self._mark_changes()
             self._store()
 
@@ -596,7 +572,7 @@ class Program:
         if self.between is not None and not self._is_fresh:  # the state was put back, or changed
             self._support[:] = self.between.support(self.model)[self._held_rows]
         time, size = self._control[:2].tolist()
-        self._ready().observe(time, size, *self._observed, *self._columns)
+        self._ready().observe(time, size, *self._observed, *self.columns.values())
         for coordinates in self._acting:
             coordinates.store()
         for table, names in OBSERVED.items():

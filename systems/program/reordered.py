@@ -69,13 +69,13 @@ class ReorderedProgram(Program):
         self._places = {"particles": self.layout.particles, "rods": self.layout.rods}
         self._held: dict[str, tuple[Column, Numbers, Column]] = {}
         super().bind()
-        written = [path for b in self._writer.commits for path in b.system.writes]
-        self._of_state = [self._held[path] for path in (*self.motion, *written)]
+        written = self._writer.written
+        self._of_state = [self._held[path] for path in (*self.motion, *written.values())]
         derived = (f"{table}.{name}" for table, names in OBSERVED.items() for name in names)
         self._derived = [self._held[path] for path in derived if path in self._held]
-        to_write = {*PUSHED, *(path.replace(".", "_", 1) for path in written)}
+        to_write = {*PUSHED, *written}
         columns = self.columns.items()
-        self._columns = [array if name in to_write else read_only(array) for name, array in columns]
+        self.columns = {name: array if name in to_write else read_only(array) for name, array in columns}
         self._bind_arguments()
         self._held_revision = -1
 
@@ -117,8 +117,7 @@ class ReorderedProgram(Program):
             "block_cores": self._block_cores,
         }
         self._of_kernels: list[tuple[Column, Numbers, Column]] = []
-        for system in self.systems:
-            bound = bind(system, self.model)
+        for bound in [bind(b.system, self.model) for b in self._writer.bound]:
             if bound.each == "loads":
                 arranged |= self._loads(bound.prefix, given)
                 continue
@@ -201,17 +200,8 @@ class ReorderedProgram(Program):
 
 
 def make_program(
-    model: Model,
-    systems: Sequence[StepSystem],
-    integrator: Integrator,
-    form: str = "",
-    moving: NDArray[np.bool_] | None = None,
+    model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str = ""
 ) -> Program:
-    """The step program of a plan, in the form that suits the model or in another one.
-
-    moving: which particles it moves, as in ReorderedProgram; None: all.
-    """
+    """The step program of a plan, in the form that suits the model or in another one."""
     form = form or form_of(model, integrator, systems)
-    if form == VERY_MANY or moving is not None:
-        return ReorderedProgram(model, systems, integrator, form, moving)
-    return Program(model, systems, integrator, form)
+    return (ReorderedProgram if form == VERY_MANY else Program)(model, systems, integrator, form)

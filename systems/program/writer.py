@@ -308,9 +308,9 @@ class Writer:
         return ("predicted", "power", "gained")
 
     @property
-    def written(self) -> list[str]:
-        """The columns that commits write."""
-        return [_column(b) for b in self.commits]
+    def written(self) -> dict[str, str]:
+        """The columns that commits write, "table.field", by their names in the program."""
+        return {_column(b): b.system.writes[0] for b in self.commits}
 
     @property
     def kept(self) -> list[str]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -77,7 +78,7 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     if meaningless or coarse or not clock.time > then["clock.time"][0]:
         return None
     program = simulation.programs.compiled
-    reached, size, target = _Quantities.of(program), clock.step_size, simulation.moved_until
+    reached, size, target = _quantities(program), clock.step_size, simulation.moved_until
     steps = clock.steps - then["clock.steps"][0]
     yielded = clock.dissipated_plastic > then["clock.dissipated_plastic"][0]
     with simulation.aside(beginning):
@@ -87,47 +88,28 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
             largest = _by_steps(simulation, program, target, size)
             order = 1 if yielded and not program.integrator.controlled else program.integrator.order
             factor = 2.0**order / (2.0**order - 1.0)
-        again = _Quantities.of(program)
-    largest = np.maximum(largest, reached.sizes)
-    difference = factor * (reached - again).sizes
+        again = _quantities(program)
+    largest = np.maximum(largest, _sizes(reached))
+    difference = factor * _sizes(map(np.subtract, reached, again))
     if not np.isfinite(largest + difference).all():
         return None
     relative = np.divide(difference, largest, out=np.zeros(len(largest)), where=largest > 0.0)
     return MeasuredError(*np.stack([difference, relative], axis=1).ravel().tolist())
 
 
-@dataclass(frozen=True)
-class _Quantities:
-    """What is compared: of all particles (n, 2) in m and m/s, of all rods (n,) in kN, and of what bends in rad and kN·m."""
+def _quantities(program: Program) -> list[Column]:
+    """What is compared in the present state: of particles (n, 2) in m and m/s, of rods in kN; rotations, bending moments."""
+    program.observe()
+    particles, rods = program.model.particles, program.model.rods
+    moments = rods.bending_moment if bends(program.model) else np.zeros(0)
+    found = particles.displacement, particles.velocity, rods.axial_force, particles.rotation, moments
+    return [column.copy() for column in found]
 
-    displacement: Column
-    velocity: Column
-    axial_force: Column
-    rotation: Column
-    bending_moment: Column
 
-    @classmethod
-    def of(cls, program: Program) -> _Quantities:
-        """Those of the present state."""
-        program.observe()
-        particles, rods = program.model.particles, program.model.rods
-        bent = particles.rotation, rods.bending_moment if bends(program.model) else np.zeros(0)
-        return cls(
-            particles.displacement.copy(),
-            particles.velocity.copy(),
-            rods.axial_force.copy(),
-            *(column.copy() for column in bent),
-        )
-
-    def __sub__(self, other: _Quantities) -> _Quantities:
-        return _Quantities(*(getattr(self, f.name) - getattr(other, f.name) for f in fields(self)))
-
-    @property
-    def sizes(self) -> Column:
-        """The largest of any particle or rod, shape (5,)."""
-        lengths = (np.hypot(*self.displacement.T), np.hypot(*self.velocity.T))
-        sizes = map(np.abs, (self.axial_force, self.rotation, self.bending_moment))
-        return np.array([length.max(initial=0.0) for length in (*lengths, *sizes)])
+def _sizes(quantities: Iterable[Column]) -> Column:
+    """The largest of each, of any particle or rod, shape (5,)."""
+    lengths = (np.hypot(*some.T) if some.ndim > 1 else np.abs(some) for some in quantities)
+    return np.array([length.max(initial=0.0) for length in lengths])
 
 
 def _by_tolerance(program: Program, target: float, most: int) -> Column:
@@ -146,13 +128,13 @@ def _by_steps(simulation: Simulation, program: Program, target: float, size: flo
     clock = program.model.clock
     steps = math.ceil(2.0 * (target - clock.time) / size * (1.0 - 1e-9))
     simulation.step_size.begin((target - clock.time) / steps)
-    largest, piece = _Quantities.of(program).sizes, -(-steps // PIECES)
+    largest, piece = _sizes(_quantities(program)), -(-steps // PIECES)
     while steps > 0:
         taken, _ = program.advance(min(piece, steps))
         if taken == 0:
             return _UNKNOWN
         steps -= taken
-        largest = np.maximum(largest, _Quantities.of(program).sizes)
+        largest = np.maximum(largest, _sizes(_quantities(program)))
     return largest
 
 
@@ -161,15 +143,15 @@ def _pieces(program: Program, target: float, most: int) -> Column:
 
     Returns the largest quantities at the ends of pieces; not numbers if it did not get there in `most` steps.
     """
-    clock, largest = program.model.clock, _Quantities.of(program).sizes
+    clock, largest = program.model.clock, _sizes(_quantities(program))
     for end in np.linspace(clock.time, target, PIECES + 1)[1:].tolist():
         while (before := clock.time) < end:
             taken, _ = program.advance(min(most, REVIEW_INTERVAL), end, end)
             most -= taken
             if clock.time == before or most <= 0:
                 return _UNKNOWN
-        largest = np.maximum(largest, _Quantities.of(program).sizes)
+        largest = np.maximum(largest, _sizes(_quantities(program)))
     return largest
 
 
-_UNKNOWN = np.full(len(fields(_Quantities)), math.nan)
+_UNKNOWN = np.array([math.nan])  # of each quantity

@@ -30,8 +30,8 @@ Dynamics = Program | Flight  # what moves a model: forces and energies by the sy
 class Programs:
     """What moves one model, made once for each plan; that of the present plan is bound to the model.
 
-    scene: the scene whose systems act in the run. collides: particles may meet, by the plan that was bound last.
-    bindings: how often a plan was bound. compile_seconds: spent in compiling or loading programs.
+    scene: the scene whose systems act in the run. bindings: how often a plan was bound. compile_seconds: spent in compiling
+    or loading programs.
     """
 
     def __init__(self, model: Model, schedule: Schedule, impacts: Impacts, scene: str) -> None:
@@ -39,7 +39,6 @@ class Programs:
         self._model = model
         self._schedule = schedule
         self._impacts = impacts
-        self.collides = False
         self.bindings = 0
         self.compile_seconds = 0.0
         self._made: dict[tuple[str, ...], Dynamics] = {}
@@ -53,6 +52,11 @@ class Programs:
         if self._plan is None:
             self._plan = self._schedule.step_plan(self.scene, self._model)
         return self._plan
+
+    @property
+    def collides(self) -> bool:
+        """True if particles may meet."""
+        return any(system.impulsive for system in self.plan)
 
     def planned(self) -> Plan:
         """All systems that run in the scene with the model, the integrator among them, and why the others do not."""
@@ -89,9 +93,8 @@ class Programs:
     def integrator(self) -> Integrator:
         """Exact flight if every system of the plan leaves it exact, else the integrator."""
         if self._integrator is None:
-            plan = self.plan
-            exact = all(system.leaves_flight_exact(self._model) for system in plan)
-            self._integrator = FREE_FLIGHT if exact and _collides(plan) else self._chosen
+            exact = all(system.leaves_flight_exact(self._model) for system in self.plan)
+            self._integrator = FREE_FLIGHT if exact and self.collides else self._chosen
         return self._integrator
 
     @property
@@ -153,9 +156,8 @@ class Programs:
     def bind(self) -> Dynamics:
         """Bind what moves the model to its columns. A mod whose system cannot join the program is switched off."""
         while self._bound is None:
-            plan = self.plan
             try:
-                self._bound, self.collides = self._bound_to(plan), _collides(plan)
+                self._bound = self._bound_to(self.plan)
                 self.bindings += 1
             except ProgramError as error:
                 if not blame_mod(error) and not self.blame_by_leaving_out(self._makes_program, str(error)):
@@ -238,7 +240,3 @@ class Programs:
 
     def _key(self, plan: list[StepSystem]) -> tuple[str, ...]:
         return kind_of(self._model, self.integrator, plan)
-
-
-def _collides(plan: list[StepSystem]) -> bool:
-    return any(system.impulsive for system in plan)

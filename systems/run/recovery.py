@@ -8,7 +8,7 @@ import numpy as np
 
 from pinjoint.components import written
 from pinjoint.components.field import same
-from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.systems.base import REVIEW_INTERVAL, StopReason
@@ -22,7 +22,6 @@ FAILURES = (StopReason.DIVERGED, StopReason.UNRESOLVED, StopReason.FAILED)
 MOST_HALVINGS = 6  # of an automatic step before a run is given up
 
 MOVING = *MOTION, *TURNING, "rods.plastic_strain"
-NOT_FINITE = marked("The run leads to numbers that are not finite.")
 
 
 class Recovery:
@@ -62,7 +61,8 @@ class Recovery:
         steps = self._model.clock.steps - int(self.safe.columns["clock.steps"][0]) + 1
         found = program.failure is not None and blame_mod(program.failure)
         try:
-            found = found or self._programs.blame_by_leaving_out(partial(self._lead_on, steps), tr(NOT_FINITE))
+            problem = tr("The run leads to numbers that are not finite.")
+            found = found or self._programs.blame_by_leaving_out(partial(self._lead_on, steps), problem)
         finally:
             self.safe.restore(self._model)
         if not found:

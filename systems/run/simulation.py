@@ -20,7 +20,6 @@ from pinjoint.components.rod import idle_moment
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.world import Derivation
 from pinjoint.systems.base import REVIEW_INTERVAL, Integrator, StepSystem, StopReason
-from pinjoint.systems.collision.driven.stepper import DrivenCollisions
 from pinjoint.systems.collision.free.flight import Flight
 from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.collision.overlaps import PARTING, part_overlaps, work_ahead
@@ -37,15 +36,12 @@ from pinjoint.systems.run.notes import (
     overlap_warning,
     reflection_warning,
 )
-from pinjoint.systems.run.program_steps import ProgramSteps
+from pinjoint.systems.run.program_steps import DrivenSteps, ProgramSteps
 from pinjoint.systems.run.programs import Dynamics, Programs
 from pinjoint.systems.run.recovery import FAILURES, Recovery
 from pinjoint.systems.run.sleep import Sleep
 from pinjoint.systems.run.step_size import StepSize, begin_steps
 from pinjoint.systems.schedule import Plan, Schedule
-
-# Of the clock, as a run begins.
-CHOSEN = ("step_size", "guard_energy", "largest_imbalance", "initial_energy", "potential_reference")
 
 # Messages of runs that diverged, and of one that does not get on.
 UNRESOLVED = marked(
@@ -100,8 +96,8 @@ class Simulation:
         self.programs = Programs(model, schedule, self.impacts, scene)
         self._sleep = Sleep(model)
         self.step_size = StepSize(model, self.programs, self._sleep)
-        self._steps = ProgramSteps(model, self.programs, self._sleep, self.step_size)
-        self._driven_collisions = DrivenCollisions(model, self.impacts, self._steps)
+        taking = model, self.programs, self._sleep, self.step_size
+        self._steps, self._driven_steps = ProgramSteps(*taking), DrivenSteps(*taking, self.impacts)
         self._account = Account(model, self._measured)
         self._recovery = Recovery(model, self.programs, self._sleep, self.step_size)
         self._announces = True
@@ -154,11 +150,11 @@ class Simulation:
         return self.programs.dynamics
 
     @property
-    def _stepper(self) -> Flight | DrivenCollisions | ProgramSteps:
+    def _stepper(self) -> Flight | ProgramSteps:
         """The stepper: exact flight, or the steps of a program, ended at impacts if any may come."""
         if isinstance(self.program, Flight):
             return self.program
-        return self._driven_collisions if self.programs.collides else self._steps
+        return self._driven_steps if self.programs.collides else self._steps
 
     # --- getting ready -------------------------------------------------------------------------------
 
@@ -183,8 +179,7 @@ class Simulation:
             problem = incomputable(self.model, self._sound_at)
             if not problem:
                 self._sound_at = self.model.revision
-                collides = any(system.impulsive for system in self.plan)
-                parted = self._parted() if collides else ""
+                parted = self._parted() if self.programs.collides else ""
                 self.program.commit()  # rods that edits left beyond a strength yield
                 self.note = joined([self.programs.note, parted, idle_moment(self.model)])
                 self._account.close()
@@ -257,7 +252,8 @@ class Simulation:
 
     def start_anew(self) -> None:
         """Begin a new run with a state from before edits."""
-        for name in CHOSEN:
+        chosen = "step_size", "guard_energy", "largest_imbalance", "initial_energy", "potential_reference"
+        for name in chosen:
             self.model.writable(f"clock.{name}")[0] = 0.0
         self.stay()
         self.forget()
@@ -568,7 +564,7 @@ class Simulation:
     def _of_collisions(self) -> list[str]:
         """What a person should know of impacts and contacts."""
         flying = self.programs.flying
-        told = [contact_warning(*self._driven_collisions.unclosed), reflection_warning(self.impacts.cut_short)]
+        told = [contact_warning(*self._driven_steps.unclosed), reflection_warning(self.impacts.cut_short)]
         if flying is not None:
             told.append(overlap_warning(flying.deepest))
             if flying.created > 0.0:

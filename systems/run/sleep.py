@@ -20,7 +20,7 @@ from pinjoint.systems.islands import IMMOVABLE, Rows, islands
 from pinjoint.systems.physics.rest import Array, Mask, RestMeasure
 from pinjoint.systems.program.entries import ASLEEP
 from pinjoint.systems.program.program import Program
-from pinjoint.systems.program.reordered import ReorderedProgram, make_program
+from pinjoint.systems.program.reordered import ReorderedProgram
 from pinjoint.systems.run.programs import Dynamics
 
 # Steps between reviews of islands; fewer: asleep sooner, but a review costs as much as ten steps.
@@ -154,11 +154,8 @@ class Sleep:
         moving = ~asleep & (self._of_particle != IMMOVABLE)
         part = self._parts.get(program)
         if part is None:
-            made = make_program(
-                self.model, [*program.systems, *program.impulsive], program.integrator, program.form, moving
-            )
-            assert isinstance(made, ReorderedProgram)
-            part = self._parts[program] = made
+            part = ReorderedProgram(self.model, program.plan, program.integrator, program.form, moving)
+            self._parts[program] = part
         else:
             part.move(moving)
         part.measures[ASLEEP] = self._observed(program).measures(self.model, *part.left_out)

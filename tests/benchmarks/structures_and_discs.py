@@ -12,6 +12,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from tests.benchmarks.models import lattice
 from tests.reference.forms import load_all
+from tests.reference.models import model, particle, rod
 
 Row = dict[str, Any]
 GRAVITY = {"acceleration": [0.0, -9.81]}
@@ -21,30 +22,21 @@ def deck(balls: int, columns: int = 20, rows: int = 3) -> dict[str, Any]:
     """A lattice of damped rods on two supports, and balls that fall onto it."""
     random, spacing = np.random.default_rng(0), 0.5
     nodes = [(row, column) for row in range(rows) for column in range(columns)]
-    particles: list[dict[str, Any]] = [
-        {
-            "name": f"n{row}.{column}",
-            "position": [spacing * column, spacing * row],
-            "fixed": [row == 0 and column in (0, columns - 1)] * 2,
-            "mass": 10.0,
-        }
-        for row, column in nodes
+    particles = [
+        particle(f"n{r}.{c}", spacing * c, spacing * r, fixed=[r == 0 and c in (0, columns - 1)] * 2, mass=10.0)
+        for r, c in nodes
     ]
     ends = [((r, c), (r + dr, c + dc)) for r, c in nodes for dr, dc in ((0, 1), (1, 0), (1, 1))]
     rods = [
-        {
-            "name": f"r{k}",
-            "between": ["n{}.{}".format(*a), "n{}.{}".format(*b)],
-            "stiffness": 1e4,
-            "damping": 20.0,
-        }
-        for k, (a, b) in enumerate((a, b) for a, b in ends if b[0] < rows and b[1] < columns)
+        rod("n{}.{}".format(*a), "n{}.{}".format(*b), stiffness=1e4, damping=20.0)
+        for a, b in ends
+        if b[0] < rows and b[1] < columns
     ]
     width, top = spacing * (columns - 1), spacing * (rows - 1)
     for k in range(balls):
         x, y = width * (k + 0.5) / balls + random.uniform(-0.05, 0.05), top + 0.5 + random.uniform(0.0, 0.5)
-        particles.append({"name": f"ball{k}", "position": [x, y], "radius": 0.12})
-    return _document(particles, rods)
+        particles.append(particle(f"ball{k}", x, y, radius=0.12))
+    return model(particles, rods, environment=GRAVITY, settings={"restitution": 0.3})
 
 
 def ball_on_truss(ball: bool) -> dict[str, Any]:
@@ -61,21 +53,20 @@ def ball_on_net(ball: bool) -> dict[str, Any]:
     document = _bundled("hanging_net")
     document["settings"] |= {"collisions": True, "restitution": 0.5}
     if ball:
-        ball_ = {"name": "ball", "position": [1.27, 1.79], "mass": 5.0, "radius": 0.25}
-        document["particles"].append(ball_)
+        document["particles"].append(particle("ball", 1.27, 1.79, mass=5.0, radius=0.25))
     return document
 
 
 def large(balls: int) -> Model:
     """A lattice of about 10 000 rods, and balls that fall onto its upper edge."""
-    model = lattice(10_000, damping=1.0)
-    model.environment.acceleration = (0.0, -9.81)
-    corner, radius = model.particles.position.max(axis=0), 0.2
+    made = lattice(10_000, damping=1.0)
+    made.environment.acceleration = (0.0, -9.81)
+    corner, radius = made.particles.position.max(axis=0), 0.2
     random = np.random.default_rng(1)
     for k in range(balls):
         x, y = corner[0] * (k + 0.5) / balls, corner[1] + radius + 0.05 + random.uniform(0.001, 0.02)
-        model.create(Particle, position=(x, y), radius=radius, mass=0.1)
-    return model
+        made.create(Particle, position=(x, y), radius=radius, mass=0.1)
+    return made
 
 
 def _bundled(name: str) -> dict[str, Any]:
@@ -83,11 +74,6 @@ def _bundled(name: str) -> dict[str, Any]:
         (files("pinjoint.assets") / "models" / f"{name}.json").read_text(encoding="utf-8")
     )
     return document
-
-
-def _document(particles: list[dict[str, Any]], rods: list[dict[str, Any]]) -> dict[str, Any]:
-    head = {"format": "pinjoint model", "version": 1, "environment": GRAVITY, "settings": {"restitution": 0.3}}
-    return head | {"particles": particles, "rods": rods}
 
 
 def _measured(session: Session, seconds: float) -> tuple[float, int]:

@@ -52,7 +52,7 @@ def test_a_mods_event_happens_at_the_same_time_to_the_bit_in_all_four_ways_of_ru
     file = tmp_path / "held.json"
     file.write_text(json.dumps(pulled()), encoding="utf-8")
     run = Session.open(file)
-    run.simulation.program.load()  # the others are interpreted
+    run.simulation.program.module.load()  # the others are interpreted
     run.run(time=0.2)
     expected = run.simulation.events
     assert [(happening.event, happening.fallen) for happening in expected] == [("breaking.rods", ("AB",))]

@@ -117,7 +117,7 @@ def test_magnets_attract_and_repel_up_to_their_reach_and_keep_the_energy(unloade
     assert pulls == pytest.approx(expected, abs=1e-15)
     session.settings.time_step = 1e-5
     session.settings.collisions = False
-    session.simulation.program.load()  # it takes ten thousand steps
+    session.simulation.program.module.load()  # it takes ten thousand steps
     session.run(time=0.1)
     assert session.energy.kinetic > 0.1
     assert abs(session.energy.imbalance) < 1e-6 * session.energy.kinetic

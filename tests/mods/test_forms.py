@@ -78,7 +78,7 @@ def test_both_forms_give_the_same_bits(opened: Any) -> None:
     assert is_interpreted(session)
     before = session.particles.displacement.tobytes()
     session.undo()
-    session.simulation.programs.compiled.load()
+    session.simulation.programs.compiled.module.load()
     session.run(steps=30)
     assert not is_interpreted(session)
     assert session.particles.displacement.tobytes() == before

@@ -11,17 +11,15 @@ from pinjoint.mods import guard
 from tests.mods.conftest import Write
 from tests.reference.models import model, particle, rod
 
-TRUSS: dict[str, Any] = {
-    "format": "pinjoint model",
-    "version": 1,
-    "settings": {"integrator": "velocity_verlet", "collisions": False},  # the quickest to compile
-    "particles": [
-        {"name": "A", "position": [0.0, 0.0], "fixed": [True, True]},
-        {"name": "B", "position": [1.0, 0.0], "fixed": [False, True]},
-        {"name": "C", "position": [0.5, 1.0], "force": [1.0, -2.0]},
+TRUSS: dict[str, Any] = model(
+    [
+        particle("A", 0.0, 0.0, fixed=[True, True]),
+        particle("B", 1.0, 0.0, fixed=[False, True]),
+        particle("C", 0.5, 1.0, force=[1.0, -2.0]),
     ],
-    "rods": [{"name": "AC", "between": ["A", "C"]}, {"name": "BC", "between": ["B", "C"]}],
-}
+    [rod("A", "C"), rod("B", "C")],
+    settings={"integrator": "velocity_verlet", "collisions": False},  # the quickest to compile
+)
 
 SYSTEM = """
 import esper
@@ -192,7 +190,6 @@ def test_a_law_that_spoils_the_step_program(session: Any, kernel: str, more: str
         made.run(time=0.01)
     check_switched_off(made, before, said)
     assert made.run(time=0.01) == "time reached"
-    alone = Session.open(TRUSS)
     mods.unload(mods.MODS[-1:])
     alone = Session.open(TRUSS)
     alone.run(time=0.01)

@@ -27,8 +27,8 @@ def test_tags_of_a_model_agree_with_brute_force_through_deletion_and_undo() -> N
                 marks[tag] = {other for other in marks[tag] - {particle} if other.exists}
                 model.tag_only(marks[tag], tag)
             elif particle.exists:
-                model.tag(particle, tag)
-                marks[tag].add(particle)
+                marks[tag] = {other for other in {*marks[tag], particle} if other.exists}
+                model.tag_only(marks[tag], tag)
             for tag in tags:
                 assert model.tagged(tag) == [p for p in particles if p.exists and p in marks[tag]]
 
@@ -36,7 +36,7 @@ def test_tags_of_a_model_agree_with_brute_force_through_deletion_and_undo() -> N
 def test_only_one_element_at_a_time_is_under_the_pointer() -> None:
     model = Model()
     first, second = model.create(Particle, 2)
-    model.tag(first, Hovered)
+    model.tag_only([first], Hovered)
     revision = model.tags_revision
     model.tag_only([second], Hovered)
     assert model.tagged(Hovered) == [second]

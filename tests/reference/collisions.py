@@ -38,7 +38,6 @@ class Scene:
     radius: np.ndarray
     inverse_mass: np.ndarray
     restitution: float = 1.0
-    joined: tuple[tuple[int, int], ...] = ()
 
     def precise(self) -> "Scene":
         """Return the same scene in extended precision, at rest in held directions."""
@@ -192,12 +191,7 @@ def bisect(polynomial: list, low: Real, high: Real) -> Real:
 
 def _pairs(scene: Scene) -> list[tuple[int, int]]:
     movable = (scene.inverse_mass > 0).any(axis=1)
-    joined = {frozenset(pair) for pair in scene.joined}
-    return [
-        (i, j)
-        for i, j in combinations(range(len(scene.radius)), 2)
-        if (movable[i] or movable[j]) and frozenset((i, j)) not in joined
-    ]
+    return [(i, j) for i, j in combinations(range(len(scene.radius)), 2) if movable[i] or movable[j]]
 
 
 class Impacts:

@@ -460,9 +460,9 @@ def test_an_element_is_made_by_its_model_only() -> None:
 def test_the_revision_of_tags_tells_when_marks_changed() -> None:
     model = triangle()
     a = model.particles["A"]
-    model.tag(a, Selected)
+    model.tag_only([a], Selected)
     revision = model.tags_revision
-    model.tag(a, Selected)
+    model.tag_only([a], Selected)
     model.tag_only([], DiagramShown)
     assert model.tags_revision == revision
     model.tag_only([], Selected)
@@ -477,7 +477,7 @@ def test_worlds_do_not_see_each_other() -> None:
     first, second = triangle(), triangle()
     first.particles["A"].force = (1.0, 0.0)
     first.delete([first.particles["C"]])
-    second.tag(second.particles["B"], Selected)
+    second.tag_only([second.particles["B"]], Selected)
     first.create(Particle, name=["D"])
     assert second.particles.names == ["A", "B", "C"]
     assert second.particles["A"].force == (0.0, 0.0)

@@ -11,7 +11,7 @@ from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.components import FieldError
 from pinjoint.included.histories import read_record, shake
-from tests.reference.models import model
+from tests.reference.models import model, particle, rod
 
 STIFFNESS, MASS = 100.0, 100.0  # kN/m, kg
 OMEGA = math.sqrt(1000.0 * STIFFNESS / MASS)
@@ -37,24 +37,27 @@ def oscillators() -> dict[str, Any]:
     particles, rods, loads = [], [], []
     for row, (name, history) in enumerate(HISTORIES.items()):
         particles += [
-            {"name": f"{name} support", "position": [0.0, row], "fixed": [True, True]},
-            {"name": name, "position": [1.0, row], "fixed": [False, True], "mass": MASS},
+            particle(f"{name} support", 0.0, row, fixed=[True, True]),
+            particle(name, 1.0, row, fixed=[False, True], mass=MASS),
         ]
-        damping = 2.0 * DAMPING_RATIO * math.sqrt(1000.0 * STIFFNESS * MASS) / 1000.0
-        rods.append(
-            {
-                "name": name,
-                "between": [f"{name} support", name],
-                "stiffness": STIFFNESS,
-                "damping": damping if name == "sine" else 0.0,
-            }
-        )
+        ratio = DAMPING_RATIO if name == "sine" else 0.0
+        damping = 2.0 * ratio * math.sqrt(1000.0 * STIFFNESS * MASS) / 1000.0
+        rods.append(rod(f"{name} support", name, stiffness=STIFFNESS, damping=damping))
         loads.append({"on": name, "force": [FORCE, 0.0], "history": history})
-    return model(
-        particles,
-        rods,
-        settings={"time_step": 1e-05, "integrator": "velocity_verlet", "collisions": False},
-        loads=loads,
+    settings = {"time_step": 1e-05, "integrator": "velocity_verlet", "collisions": False}
+    return model(particles, rods, settings=settings, loads=loads)
+
+
+def only(name: str, history: dict[str, Any], **settings: Any) -> Session:
+    """The oscillator of this name alone, under another history."""
+    document, row = oscillators(), [*HISTORIES].index(name)
+    return Session.open(
+        model(
+            document["particles"][2 * row : 2 * row + 2],
+            document["rods"][row : row + 1],
+            settings=settings,
+            loads=[document["loads"][row] | {"history": history}],
+        )
     )
 
 
@@ -93,11 +96,7 @@ def test_the_largest_response_to_a_pulse(session: Session) -> None:
 def test_a_load_may_jump_while_everything_is_at_rest(integrator: str) -> None:
     """The same response as above, later; no displacement tells yet what an error is relative to."""
     start = 0.7
-    document = oscillators()
-    document["settings"] = {"integrator": integrator}
-    document["particles"], document["rods"] = document["particles"][6:8], document["rods"][3:4]
-    document["loads"] = [document["loads"][3] | {"history": HISTORIES["pulse"] | {"start": start}}]
-    late = Session.open(document)
+    late = only("pulse", HISTORIES["pulse"] | {"start": start}, integrator=integrator)
     assert late.run(time=start + PULSE / 2.0 + PERIOD / 4.0) == "time reached", late.message
     expected = 2.0 * math.sin(math.pi * PULSE / PERIOD)
     assert late.particles["pulse"].displacement[0] / STATIC == pytest.approx(expected, rel=1e-7)
@@ -108,12 +107,8 @@ def test_a_load_may_jump_while_everything_is_at_rest(integrator: str) -> None:
 def test_the_work_of_a_load_that_jumps_within_the_first_step(integrator: str, share: float) -> None:
     """Force × displacement: nothing moves before. Of the piece after the jump no half is lost to rounding."""
     step = 3.1e-5
-    document = oscillators()
-    document["settings"] = {"integrator": integrator, "time_step": step}
-    document["particles"], document["rods"] = document["particles"][6:8], document["rods"][3:4]
     jump = {"kind": "ramp", "start": share * step, "duration": 0.0}
-    document["loads"] = [document["loads"][3] | {"history": jump}]
-    session = Session.open(document)
+    session = only("pulse", jump, integrator=integrator, time_step=step)
     session.run(steps=3)
     moved = session.particles["pulse"].displacement[0]
     assert moved > 0.0
@@ -123,12 +118,8 @@ def test_the_work_of_a_load_that_jumps_within_the_first_step(integrator: str, sh
 @pytest.mark.parametrize("integrator", ["velocity_verlet", "semi_implicit_euler", "taylor2"])
 def test_a_load_may_grow_from_nothing_while_everything_is_at_rest(integrator: str) -> None:
     """After the first step of Euler and Taylor the load acts, but has moved nothing yet: no alarm."""
-    document = oscillators()
-    document["settings"] = {"integrator": integrator, "time_step": 3.1e-5}
-    document["particles"], document["rods"] = document["particles"][6:8], document["rods"][3:4]
     growing = {"kind": "ramp", "start": 0.0, "duration": 0.01}
-    document["loads"] = [document["loads"][3] | {"history": growing}]
-    session = Session.open(document)
+    session = only("pulse", growing, integrator=integrator, time_step=3.1e-5)
     assert session.run(steps=100) == "time reached", session.message
 
 
@@ -142,10 +133,7 @@ def test_the_steady_response_to_a_sine(settings: dict[str, Any]) -> None:
 
     After 24 periods of the load, what it began with is e^(−ξωt) = 5e-9 of that.
     """
-    document = oscillators()
-    document["settings"] = settings
-    document["particles"], document["rods"] = document["particles"][8:10], document["rods"][4:5]
-    session = Session.open(document | {"loads": document["loads"][4:5]})
+    session = only("sine", HISTORIES["sine"], **settings)
     r = 2.0 * math.pi * FREQUENCY / OMEGA
     amplitude = 1.0 / math.hypot(1.0 - r * r, 2.0 * DAMPING_RATIO * r)
     phase = math.atan2(2.0 * DAMPING_RATIO * r, 1.0 - r * r)

@@ -10,7 +10,6 @@ from pinjoint.components.grid import Grid
 from pinjoint.components.language import marked, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
-from pinjoint.editor.actions.editing import all_of
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import DrawForce, DrawMoment, DrawRod, DrawVelocity, tool_in_hand
 from pinjoint.systems.edit import Refusal
@@ -37,11 +36,7 @@ def _place(context: Context, pixel: Vector) -> None:
         return
     model, view = context.model, context.view
     particle = place(model, view, snapped(model, view, view.camera.to_model(pixel)))
-    context.notice = tr(
-        "{element}: {value}",
-        element=context.name(particle),
-        value=written.place(particle.position, written.DIGITS),
-    )
+    context.tell(written.place(particle.position, written.DIGITS), particle)
 
 
 # The status line names the kind of rods, too.
@@ -79,7 +74,7 @@ def _rigid(context: Context, pixel: Vector) -> None:
     rigid = not all(is_rigid(*end) for end in ends)
     set_rigid(context.model, ends, rigid, tr("rigid joints") if rigid else tr("hinges"))
     context.view.rigid = rigid
-    named, section = all_of(context, rods), rods[0].section
+    named, section = context.name(*rods), rods[0].section
     if not rigid:
         context.notice = tr("{rods}: pinned at both ends", rods=named)
     elif section is None:
@@ -100,13 +95,9 @@ def _hinge(context: Context, pixel: Vector) -> None:
     """Hinge the rod's end under the pointer, or make it rigid; at a particle all ends there; else take up the tool."""
     model, view = context.model, context.view
     if (particle := pick_particle(model, view, pixel)) is not None:
-        context.notice = tr(
-            "{element}: {value}", element=context.name(particle), value=tr(toggle_joint(model, particle))
-        )
+        context.tell(tr(toggle_joint(model, particle)), particle)
     elif (end := _end_at(context, pixel)) is not None:
-        context.notice = tr(
-            "{element}: {value}", element=context.name(end[0]), value=tr(toggle_hinge(model, *end))
-        )
+        context.tell(tr(toggle_hinge(model, *end)), end[0])
     elif view.tool == "hinge" and not view.covers(pixel):
         raise Refusal(
             "Click near the end of a rod, where a ring appears, or on a joint. Esc puts the tool away."
@@ -136,14 +127,13 @@ def _end_at(context: Context, pixel: Vector) -> tuple[Rod, int] | None:
 def _support(context: Context, pixel: Vector) -> None:
     """The next support of the particle under the pointer, else of the selected ones; without any, take up the tool."""
     hit = pick_particle(context.model, context.view, pixel)
-    chosen = [handle for handle in context.selected if isinstance(handle, Particle)]
+    chosen = context.selected_of(Particle)
     if hit is not None and hit not in chosen:
         chosen = [hit]
     if not chosen:
         context.take_up("support")
         return
-    support = next_support(context.model, chosen)
-    context.notice = tr("{element}: {value}", element=all_of(context, chosen), value=tr(support))
+    context.tell(tr(next_support(context.model, chosen)), *chosen)
 
 
 action(
@@ -151,7 +141,7 @@ action(
     "f",
     "draw a load on a particle or a rod",
     while_drawing=True,
-    draws=DrawForce.begin_anywhere,
+    draws=DrawForce.begin,
     enabled=attrgetter("model.particles.count"),
     hint=marked("loads: drag an arrow from a particle     from a rod: a distributed load     F or Esc done"),
 )(DrawForce.use)
@@ -160,7 +150,7 @@ action(
     "ctrl+m",
     "draw a moment on a particle",
     while_drawing=True,
-    draws=DrawMoment.begin_anywhere,
+    draws=DrawMoment.begin,
     enabled=attrgetter("model.particles.count"),
     hint=marked("moments: drag from a particle, to the left for counter-clockwise     Esc done"),
 )(DrawMoment.use)
@@ -169,7 +159,7 @@ action(
     "v",
     "draw the velocity of a particle",
     while_drawing=True,
-    draws=DrawVelocity.begin_anywhere,
+    draws=DrawVelocity.begin,
     enabled=attrgetter("model.particles.count"),
     hint=marked("velocities: drag an arrow from a particle     V or Esc done"),
 )(DrawVelocity.use)

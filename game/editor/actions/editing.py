@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from operator import attrgetter
 
@@ -10,8 +9,7 @@ import numpy as np
 
 from pinjoint.components import written
 from pinjoint.components.field import Vector
-from pinjoint.components.handle import Handle
-from pinjoint.components.language import begun, listed, marked, plural, tr
+from pinjoint.components.language import listed, marked, plural, tr
 from pinjoint.editor.clipboard import Part
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import Drawing, DrawSupport, tool_in_hand
@@ -22,7 +20,7 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
 from pinjoint.systems.edit.placing import Movable, nudged, snapped
 from pinjoint.systems.edit.rods import delete
-from pinjoint.systems.forms.properties import counted, heading
+from pinjoint.systems.forms.properties import counted
 from pinjoint.systems.input.actions import (
     ACTIONS,
     IN_LESSONS,
@@ -212,11 +210,6 @@ def _delete(context: Context, pixel: Vector) -> None:
         context.notice = tr("{elements} deleted.", elements=listed(elements))
 
 
-def all_of(context: Context, elements: Sequence[Handle]) -> str:
-    """Some elements as a sentence begins with them."""
-    return begun(heading(context.model, elements))
-
-
 def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
     """Move the selected elements by about a pixel or, if far, a grid spacing; False if none are selected."""
     model = context.model
@@ -227,8 +220,7 @@ def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
     moved = [*chosen.particles, *chosen.others]
     with context.document.history.as_one(("nudge", *(handle.entity for handle in moved))):
         chosen.place(positions)
-    place = written.place(positions[0], written.DIGITS)
-    context.notice = tr("{element}: {value}", element=all_of(context, moved), value=place)
+    context.tell(written.place(positions[0], written.DIGITS), *moved)
     return True
 
 

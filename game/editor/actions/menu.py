@@ -10,7 +10,6 @@ from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
-from pinjoint.editor.actions.editing import all_of
 from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.force_method import ForceMethod
 from pinjoint.systems.edit import Refusal
@@ -67,8 +66,7 @@ def _hold(wanted: Held, context: Context, pixel: Vector) -> None:
     particles = context.selected_of(Particle)
     if not particles:
         raise Refusal("No particle is selected; click one first.")
-    named = support(context.model, particles, wanted)
-    context.notice = tr("{element}: {value}", element=all_of(context, particles), value=tr(named))
+    context.tell(tr(support(context.model, particles, wanted)), *particles)
 
 
 for _wanted, (_name, _title) in SUPPORTS.items():
@@ -112,14 +110,13 @@ def _toggle_cable(context: Context, pixel: Vector) -> None:
     rods = _selected(context)
     cable = not all(rod.tension_only for rod in rods)
     context.model.assign(rods, "tension_only", cable)
-    bears = tr("tension only, as a cable") if cable else tr("tension and compression")
-    context.notice = tr("{element}: {value}", element=all_of(context, rods), value=bears)
+    context.tell(tr("tension only, as a cable") if cable else tr("tension and compression"), *rods)
 
 
 def _divide(parts: int, context: Context, pixel: Vector) -> None:
     """Divide the selected rods, and select their parts."""
     rods = _selected(context)
-    named = all_of(context, rods)
+    named = context.name(*rods)
     context.select(*divide(context.model, rods, parts))
     context.notice = (
         tr("{rod}: divided into {parts} parts", rod=named, parts=parts)

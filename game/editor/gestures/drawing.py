@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import begun, joined, marked, plural, tr
+from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
 from pinjoint.components.view import BETWEEN, Preview, drawn_positions
@@ -47,11 +47,6 @@ class Drawing(Gesture):
         """A new drawing from the particle at a pixel; None if none can begin there, or one of this kind is to go on."""
         particle = pick_particle(context.model, context.view, pixel)
         return cls(context, particle) if particle is not None else None
-
-    @classmethod
-    def begin_anywhere(cls, context: Context, pixel: Vector) -> Drawing | None:
-        """A new drawing by a click or drag with the tool in hand."""
-        return cls.begin(context, pixel)
 
     @classmethod
     def use(cls, context: Context, pixel: Vector) -> None:
@@ -113,7 +108,8 @@ class DrawRod(Drawing):
         return tr("rigid ends (Ctrl+R: pinned)") if context.view.rigid else tr("pinned (Ctrl+R: rigid ends)")
 
     @classmethod
-    def begin_anywhere(cls, context: Context, pixel: Vector) -> Drawing | None:
+    def begin_anywhere(cls, context: Context, pixel: Vector) -> Drawing:
+        """A new drawing by a click or drag with the tool in hand."""
         point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
         return cls.begin(context, pixel) or cls(context, point)
 
@@ -130,7 +126,7 @@ class DrawRod(Drawing):
         with_new = plural("with one new particle", "with {count} new particles", made) if made else ""
         made_of = (rod.section or tr("rigid")) if view.rigid else ""
         said = [written.length(rod.rest_length, written.DIGITS), made_of, with_new]
-        context.notice = tr("{element}: {value}", element=context.name(rod), value=joined(said, ", "))
+        context.tell(joined(said, ", "), rod)
 
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; a click where a chain of rods has come to ends the chain."""
@@ -195,7 +191,7 @@ class DrawArrow(Drawing):
         value, elements = self.value(context, pixel), [one for one in self.elements if one.exists]
         if elements:
             context.model.assign(elements, self.field, [value] * len(elements))
-            named, rods = elements[0].name, begun(heading(context.model, elements))
+            named, rods = elements[0].name, context.name(*elements)
             said = self.shown(value)
             context.notice = tr(self.says, particle=named, rods=rods, value=said, load=said)
 
@@ -327,9 +323,7 @@ class DrawElement(Drawing):
         first, last = self.kind.points
         [made] = context.model.create(self.kind, 1, **{first: [start], last: [end]})
         context.select(made)
-        context.notice = tr(
-            "{element}: {value}", element=context.name(made), value=_length_and_angle(start, end)
-        )
+        context.tell(_length_and_angle(start, end), made)
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         start, end = self.start(context), snapped_to_points(context.model, context.view, pixel)

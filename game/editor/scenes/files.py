@@ -39,10 +39,6 @@ class FileScene(FormScene):
         """The box for the name."""
         return self.form.boxes[0]
 
-    def say(self, message: str) -> None:
-        """Show a problem or a question in the heading."""
-        self.form.message = message
-
     # --- typing and choosing -----------------------------------------------------------------------
 
     def type(self, context: Context, text: str) -> None:
@@ -51,7 +47,7 @@ class FileScene(FormScene):
         super().type(context, text)
 
     def changed(self, context: Context) -> None:
-        self.say("")
+        self.form.message = ""
         self.form.chosen = None
 
     def move(self, context: Context, direction: str) -> None:
@@ -174,7 +170,7 @@ class Save(FileScene):
         chosen = self.form.chosen
         if chosen is not None and self.box.text != chosen.file:
             self.typing.put(self.box, chosen.file)
-            self.say("")
+            self.form.message = ""
 
     def accept(self, context: Context) -> None:
         """Return: save."""
@@ -183,28 +179,24 @@ class Save(FileScene):
             path = library.path_of(name)
             if path.exists() and self._confirmed != name:
                 self._confirmed = name
-                self.say(
-                    tr(
-                        "There is already a model '{name}'. Press Return again to replace it, or Esc to keep it.",
-                        name=name,
-                    )
+                self.form.message = tr(
+                    "There is already a model '{name}'. Press Return again to replace it, or Esc to keep it.",
+                    name=name,
                 )
                 return
             path.parent.mkdir(parents=True, exist_ok=True)
             context.save_as(path)
         except OSError as error:
-            self.say(
-                tr(
-                    "The folder {folder} cannot be made: {reason}. Set the variable {variable} to a folder where you may"
-                    " write, and start Pinjoint again.",
-                    folder=library.models_folder(),
-                    reason=error.strerror,
-                    variable=library.DATA_VARIABLE,
-                )
+            self.form.message = tr(
+                "The folder {folder} cannot be made: {reason}. Set the variable {variable} to a folder where you may write,"
+                " and start Pinjoint again.",
+                folder=library.models_folder(),
+                reason=error.strerror,
+                variable=library.DATA_VARIABLE,
             )
             return
         except (library.NameRefused, models.ModelError) as error:
-            self.say(str(error))
+            self.form.message = str(error)
             return
         context.scenes.request("pause")
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.camera import Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
@@ -235,10 +235,6 @@ class ForceMethod(Scene):
         return [one.model.settings for one in self.shown_guide.sets] if self.shown_guide else []
 
     # --- looking closer: all sets alike ----------------------------------------------------------------
-
-    def cameras(self, context: Context) -> list[Camera]:
-        """The cameras of the sets, which zoom and pan together."""
-        return [view.camera for _, view in self._lay_out(context)]
 
     def zoom(self, context: Context, factor: float, pixel: Vector) -> None:
         self.finish()

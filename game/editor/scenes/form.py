@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import ClassVar
 
 from pinjoint.components.camera import Camera, Viewport
 from pinjoint.components.field import Vector
@@ -22,8 +21,6 @@ from pinjoint.systems.render.ui.layout import Paper
 
 class FormScene(Scene):
     """A mode with a form, which is made on entering and dropped on leaving."""
-
-    targets: ClassVar[tuple[str, ...]] = ("pause",)
 
     def __init__(self) -> None:
         self.form = Form("")
@@ -72,7 +69,7 @@ class FormScene(Scene):
         return True
 
     def helped(self, context: Context) -> Viewport:
-        return self.viewport(context)
+        return self.viewport(context) if self.covers(context) else super().helped(context)
 
     def move(self, context: Context, direction: str) -> None:
         """An arrow key: "left", "right", "up" or "down"."""

@@ -79,11 +79,9 @@ class Load(FileScene):
         else:
             self._asked = True
             self.form.chosen = tile
-            self.say(
-                tr(
-                    "Unsaved work of earlier windows will be deleted for ever. Choose this again to delete it, or press Esc"
-                    " to keep it."
-                )
+            self.form.message = tr(
+                "Unsaved work of earlier windows will be deleted for ever. Choose this again to delete it, or press Esc to"
+                " keep it."
             )
 
     def accept(self, context: Context) -> None:
@@ -93,7 +91,7 @@ class Load(FileScene):
         if chosen is not None:
             self.choose(context, chosen)
         elif not name:
-            self.say(tr("Type a name, or choose a picture with the arrow keys."))
+            self.form.message = tr("Type a name, or choose a picture with the arrow keys.")
         elif (source := library.find(name)) is not None:
             self._open(context, source)
         elif len(left) == 1:
@@ -101,7 +99,7 @@ class Load(FileScene):
         else:
             nearest = library.nearest(name)
             missing = tr("File not found: there is no model '{name}'.", name=name)
-            self.say(joined([missing, tr("Did you mean '{name}'?", name=nearest) if nearest else ""]))
+            self.form.message = joined([missing, tr("Did you mean '{name}'?", name=nearest) if nearest else ""])
 
     def _open(self, context: Context, source: Any) -> None:
         try:
@@ -116,7 +114,7 @@ class Load(FileScene):
             else:
                 context.open_here(source)
         except models.ModelError as error:
-            self.say(str(error))
+            self.form.message = str(error)
         else:
             context.scenes.request("pause")
 
@@ -130,7 +128,7 @@ class Load(FileScene):
             tile.hidden = bool(words) and (tile.rest or not all(word in told for word in words))
         self.form.first = 0
         if words and all(tile.hidden for tile in self.form.tiles):
-            self.say(tr("No model or lesson has this in its name. Delete characters with Backspace."))
+            self.form.message = tr("No model or lesson has this in its name. Delete characters with Backspace.")
 
     def hint(self, context: Context) -> str:
         _, shown, count = self.layout(context).paper.scrolled

@@ -129,9 +129,6 @@ class Properties(FormScene):
     def covers(self, context: Context) -> bool:
         return self._aside(context) is None
 
-    def helped(self, context: Context) -> Viewport:
-        return self.viewport(context) if self.covers(context) else context.view.canvas
-
     def stages(self, context: Context) -> Sequence[Stage]:
         model, view = self.focus(context)
         self._read_results(context)

@@ -219,10 +219,18 @@ class Driven(NamedTuple):
 class Listing(NamedTuple):
     """What the pairs of Driven are listed by; see kernels/neighbours.py.
 
-    first, partners: the particles that rods join, as in Constraints. found: work space, pairs, shape (p, 2).
+    The particles that rods join to particle i are partners[first[i] : first[i + 1]]. found: work space, pairs, shape (p, 2).
     """
 
     first: Integers
     partners: Integers
     found: Integers
     grid: Grid
+
+    @classmethod
+    def empty(cls, between: Integers, every: int, n: int) -> Listing:
+        """To list pairs of n particles, joined by rods between these, and of `every` with the obstacles."""
+        ends = np.concatenate([between, between[:, ::-1]]).astype(np.int64)
+        ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
+        first, partners = np.searchsorted(ends[:, 0], np.arange(n + 1)), np.ascontiguousarray(ends[:, 1])
+        return cls(first, partners, np.zeros((0, 2), dtype=np.int64), Grid.empty(every, 1))

@@ -15,7 +15,7 @@ from pinjoint.components.obstacles import Floats, obstacles
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import nodes
 from pinjoint.systems.broad_phase import gaps
-from pinjoint.systems.collision.columns import NONE, Grid, Integers, partners_of
+from pinjoint.systems.collision.columns import NONE, Grid, Integers
 from pinjoint.systems.collision.driven.columns import Driven, Listing, Order, Phase, Real, Whole
 from pinjoint.systems.collision.driven.kernels.neighbours import list_pairs
 from pinjoint.systems.collision.driven.kernels.steps import collide
@@ -62,8 +62,8 @@ class NeighbourList:
         self.count = particles.count
         self._document = self._of_document()
         self.driven = Driven.empty(self._document, self.count, 0, CONTACTS)
-        grid = Grid.empty(self.count + len(self.obstacles), 1)
-        self.listing = Listing(*partners_of(self.count, self.model.rods.between), self.driven.pairs, grid)
+        every = self.count + len(self.obstacles)
+        self.listing = Listing.empty(self.model.rods.between, every, self.count)
         self.driven.margin[:] = -1.0  # no pair is listed yet
         whole, real = self.driven.whole, self.driven.real
         whole[Whole.BOUNCY] = (self.driven.restitution < 1.0).any()
@@ -203,8 +203,7 @@ def _layout(arrays: Any) -> Any:
 
 def _idle() -> tuple[Driven, Listing]:
     """Arrays of no particles."""
-    driven = Driven.empty({}, 0, 0, 0)
-    return driven, Listing(*partners_of(0, ()), driven.pairs, Grid.empty(0, 1))
+    return Driven.empty({}, 0, 0, 0), Listing.empty(np.zeros((0, 2), dtype=np.int64), 0, 0)
 
 
 def _support(model: Model) -> Column:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from time import perf_counter
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from pinjoint.components.clock import FreeFlightState
 from pinjoint.components.obstacles import NO_OBSTACLES, Floats, Obstacles
@@ -33,10 +33,9 @@ from pinjoint.systems.collision.columns import (
     Pile,
     Queue,
     Reason,
-    partners_of,
     zeros,
 )
-from pinjoint.systems.collision.system import REST_HEIGHT, fall_time
+from pinjoint.systems.collision.system import fall_time
 from pinjoint.systems.program.compiler import Choice, GeneratedModule, entries_to
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
@@ -60,8 +59,6 @@ class Discs:
         displacement: ArrayLike = 0.0,
         acceleration: ArrayLike = 0.0,
         restitution: float = 1.0,
-        rest_height: float = REST_HEIGHT,
-        joined: Sequence[tuple[int, int]] | NDArray[Any] = (),
         time: float = 0.0,
         obstacles: Obstacles = NO_OBSTACLES,
         lost: float = 0.0,
@@ -70,9 +67,8 @@ class Discs:
 
         position: original, shape (n, 2), m. velocity: shape (n, 2), m/s, 0 in held directions. radius: shape
         (n,), m. inverse_mass: of each direction, shape (n, 2), 1/kg, 0 where it is held. displacement: m;
-        acceleration: m/s², without contacts. rest_height: bounces that would rise less, relative to the
-        smaller radius, end in persistent contact. joined: pairs that never collide. obstacles: straight pieces that
-        never move; in pairs their numbers follow those of the discs. lost: energy lost so far, J.
+        acceleration: m/s², without contacts. obstacles: straight pieces that never move; in pairs their numbers follow
+        those of the discs. lost: energy lost so far, J.
         """
         place = np.atleast_2d(np.asarray(position, dtype=np.float64))
         self._obstacles = obstacles
@@ -94,7 +90,6 @@ class Discs:
         self.numbers = np.zeros(len(Number))
         self.numbers[Number.NOW] = time
         self.numbers[Number.RESTITUTION] = self.rows[:, Disc.BOUNCE].min(initial=restitution)
-        self.numbers[Number.REST_HEIGHT] = rest_height
         self.counts = np.zeros(len(Count), dtype=np.int64)
         self.counts[Count.RENEW], self.counts[Count.LISTED] = 1, NONE
         self.counts[Count.DISCS] = self.count
@@ -111,7 +106,7 @@ class Discs:
         self.pile = Pile.empty(n, len(self.group.links))
         self.report = np.zeros((max(REPORTED_AT_ONCE, len(self.group.links)), len(Detail)))
         chains, entries = np.zeros(n, dtype=np.int64), np.zeros((0, 2), dtype=np.int64)
-        none = Constraints(*partners_of(n, joined), chains, entries, np.zeros(0))
+        none = Constraints(chains, entries, np.zeros(0))
         self.constraints = none.cleared(2 * len(self.group.links), self.counts)
 
     def _enter_obstacles(self) -> None:
@@ -192,11 +187,9 @@ class Discs:
         weight, pull = self._columns(Disc.WX), self._columns(Disc.GX)
         place = self._columns(Disc.OX) + self._columns(Disc.UX)
         radius = self.rows[: self.count, Disc.RADIUS]
-        owners, entries = self._persistent_entries()
-        pushing = np.sort(np.column_stack([owners, self.constraints.persistent[entries, Entry.OTHER]]), axis=1)
-        forces = self.constraints.forces[entries]
-        among = self._may_collide, self._obstacles
-        end = EquilibriumSearch(place, radius, weight, pull, *among, pushing, forces).solve()
+        pairs, forces = self._persistent_contacts()
+        pushing = np.sort(pairs, axis=1)
+        end = EquilibriumSearch(place, radius, weight, pull, self._obstacles, pushing, forces).solve()
         if end is None:
             self.counts[Count.PATIENCE] = self.counts[Count.CALM] + MORE_PATIENCE
             return
@@ -216,12 +209,6 @@ class Discs:
         self.counts[[Count.STEPPING, Count.WORK, Count.RENEW]] = 0, 0, 1
         self.numbers[Number.WORK_SINCE] = self.now
 
-    def _may_collide(self, pairs: Integers) -> NDArray[np.bool_]:
-        n = len(self.rows)
-        owners = np.repeat(np.arange(n), np.diff(self.constraints.first))
-        may: NDArray[np.bool_] = np.isin(pairs @ [n, 1], owners * n + self.constraints.partners, invert=True)
-        return may
-
     def _take(self) -> Floats:
         """The impacts reported since the last call."""
         k = int(self.counts[Count.REPORTED])
@@ -232,12 +219,8 @@ class Discs:
 
     def state(self) -> FreeFlightState:
         """The state from which other discs with the same properties go on bit for bit."""
-        owners, entries = self._persistent_entries()
-        pairs = np.column_stack([owners, self.constraints.persistent[entries, Entry.OTHER]])
         pile = np.concatenate([self.counts[PILE_COUNTS], self.numbers[PILE_NUMBERS]])
-        return FreeFlightState(
-            self.rows[: self.count, FLIGHT].copy(), pairs, self.constraints.forces[entries], pile
-        )
+        return FreeFlightState(self.rows[: self.count, FLIGHT].copy(), *self._persistent_contacts(), pile)
 
     def resume(self, state: FreeFlightState) -> None:
         """Go on from the state of other discs with the same properties."""
@@ -260,26 +243,26 @@ class Discs:
             self.constraints.forces[entry] = force
             self.constraints.first_persistent[i] = entry
 
-    def _persistent_entries(self) -> tuple[Integers, Integers]:
-        """The discs that have persistent contacts, once per contact, and the entries, in the order of the chains."""
-        owners, entries = [], []
+    def _persistent_contacts(self) -> tuple[Integers, Floats]:
+        """Pairs of a disc and what it touches, and the forces between them (N), in the order of the chains."""
+        pairs, entries = [], []
         for i in np.flatnonzero(self.constraints.first_persistent != NONE).tolist():
             entry = int(self.constraints.first_persistent[i])
             while entry != NONE:
-                owners.append(i)
                 entries.append(entry)
-                entry = int(self.constraints.persistent[entry, Entry.NEXT])
-        return np.array(owners, dtype=np.int64), np.array(entries, dtype=np.int64)
+                other, entry = self.constraints.persistent[entry].tolist()
+                pairs.append((i, other))
+        return np.array(pairs, dtype=np.int64).reshape(-1, 2), self.constraints.forces[entries]
 
     def contact_forces(self) -> Floats:
         """The sum of the forces (N) on each disc in its persistent contacts, shape (n, 2)."""
-        owners, entries = self._persistent_entries()
-        others = self.constraints.persistent[entries, Entry.OTHER]
+        pairs, forces = self._persistent_contacts()
+        owners, others = pairs.T
         displacement, _ = self.state_at(self.now)
         place = self.rows[:, [Disc.OX, Disc.OY]]
         place[: self.count] += displacement
         line = -nearest(place[others] - place[owners], self.rows[others][:, [Disc.TX, Disc.TY]])
-        push = line * (self.constraints.forces[entries] / np.hypot(line[:, 0], line[:, 1]))[:, None]
+        push = line * (forces / np.hypot(line[:, 0], line[:, 1]))[:, None]
         held = (self.rows[others][:, [Disc.WX, Disc.WY]] == 0.0).all(axis=1)  # without entries of their own
         total = np.zeros_like(place)
         for d in range(2):

@@ -13,8 +13,6 @@ not drift away (Nocedal, Wright, Numerical Optimization (2006), chapter 19).
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
@@ -41,10 +39,9 @@ class EquilibriumSearch:
     """The search for the equilibrium of discs that lie on one another, on held discs and on obstacles.
 
     place: centres, shape (n, 2), m. radius: shape (n,), m. inverse_mass: of each direction, shape (n, 2), 1/kg,
-    0 where it is held. pull: acceleration without contacts, shape (n, 2), m/s². may_collide: selects the pairs that collide;
-    in pairs, the numbers of obstacles follow those of the discs. pushing: pairs that are known to push, the lower
-    number first, shape (c, 2); forces: between them, shape (c,), N. A disc in none of these pairs flies: it is not
-    moved, and a disc that it comes near is not at rest.
+    0 where it is held. pull: acceleration without contacts, shape (n, 2), m/s². In pairs, the numbers of obstacles follow
+    those of the discs. pushing: pairs that are known to push, the lower number first, shape (c, 2); forces: between them,
+    shape (c,), N. A disc in none of these pairs flies: it is not moved, and a disc that it comes near is not at rest.
     """
 
     def __init__(
@@ -53,13 +50,12 @@ class EquilibriumSearch:
         radius: Floats,
         inverse_mass: Floats,
         pull: Floats,
-        may_collide: Callable[[Rows], NDArray[np.bool_]],
         obstacles: Obstacles,
         pushing: Rows,
         forces: Floats,
     ) -> None:
         self._start, self._place, self._radius = place, place.copy(), radius
-        self._may_collide, self._obstacles = may_collide, obstacles
+        self._obstacles = obstacles
         count = len(place)
         self._moves: NDArray[np.bool_] = np.zeros(count + len(obstacles), dtype=bool)
         self._moves[pushing] = True
@@ -128,7 +124,7 @@ class EquilibriumSearch:
         Forces of pairs that push are known; λ s = μ where gaps are small.
         """
         near = near_pairs(self._place, (1.0 + AROUND) * self._radius, self._obstacles)
-        pairs = near[self._moves[near].any(axis=1) & self._may_collide(near)]
+        pairs = near[self._moves[near].any(axis=1)]
         size = self._size[pairs].min(axis=1)
         scale = self._weight[pairs].min(axis=1) * size
         known, count = np.zeros(len(pairs)), len(self._moves)

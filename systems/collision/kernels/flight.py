@@ -21,9 +21,9 @@ from pinjoint.systems.collision.columns import (
     Reason,
 )
 from pinjoint.systems.collision.kernels import compiled
-from pinjoint.systems.collision.kernels.grid import enclose_anew, neighbours, place_box, sort
+from pinjoint.systems.collision.kernels.grid import enclose_anew, neighbours, sort
 from pinjoint.systems.collision.kernels.heap import drop_first, drop_void
-from pinjoint.systems.collision.kernels.horizon import is_joined, schedule_impact
+from pinjoint.systems.collision.kernels.horizon import schedule_impact
 from pinjoint.systems.collision.kernels.impact import respond
 from pinjoint.systems.collision.kernels.pair_impact import strike
 from pinjoint.systems.collision.kernels.persistent_contact import (
@@ -189,8 +189,7 @@ def _gather(i, j, discs, grid, constraints, group, numbers, counts):
         a = group.members[m]
         if not is_held(a, discs):
             count, touching = _gather_persistent(m, count, touching, discs, constraints, group, now)
-            left, bottom, right, top = place_box(a, discs, now)
-            near = neighbours(a, left, bottom, right, top, grid, counts[Count.LAYERS], 0)
+            near = neighbours(a, grid, counts[Count.LAYERS], 0)
             sort(grid.found, near)
             for k in range(near):
                 b = grid.found[k]
@@ -212,13 +211,11 @@ def _is_new(m, b, discs, group):
 
 @compiled
 def _touch(a, b, discs, constraints, now):
-    """True if two discs touch, may collide and have no persistent contact."""
+    """True if two discs touch and have no persistent contact."""
     if not are_touching(relative_motion(discs, a, b, now), a, b, discs, now):
         return False
     dx, dy, _, _ = relative_state(discs, a, b, now)
-    if is_shared_end(dx, dy, b, discs) or is_joined(a, b, constraints):
-        return False
-    return find_persistent(a, b, constraints) == NONE
+    return not is_shared_end(dx, dy, b, discs) and find_persistent(a, b, constraints) == NONE
 
 
 @compiled
@@ -247,7 +244,7 @@ def _restitution(touching, discs, group, numbers):
     least = INFINITY
     for c in range(touching):
         i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
-        slow = rest_speed(i, j, discs, numbers[Number.REST_HEIGHT], numbers[Number.NOW])
+        slow = rest_speed(i, j, discs, numbers[Number.NOW])
         if opening_rate(c, group.motion, group) < -slow:
             least = min(least, discs[j, Disc.BOUNCE])
     return least if least < INFINITY else 0.0
@@ -355,8 +352,7 @@ def _schedule_anew(count, discs, grid, constraints, queue, group, numbers, count
         i = group.members[m]
         if discs[i, Disc.EPOCH] != numbers[Number.NOW] or is_held(i, discs):
             continue
-        left, bottom, right, top = grid.boxes[i]
-        near = neighbours(i, left, bottom, right, top, grid, counts[Count.LAYERS], 0)
+        near = neighbours(i, grid, counts[Count.LAYERS], 0)
         grid.found[near] = i  # and the end of the step of its persistent contacts
         for k in range(near + 1):
             j = grid.found[k]

@@ -69,16 +69,6 @@ def set_box(i, x, y, tx, ty, around, away, grid):
 
 
 @compiled
-def place_box(i, discs, now):
-    """Box around a disc at its present place."""
-    s = now - discs[i, Disc.EPOCH]
-    x = discs[i, Disc.OX] + (discs[i, Disc.UX] + s * (discs[i, Disc.VX] + 0.5 * s * discs[i, Disc.AX]))
-    y = discs[i, Disc.OY] + (discs[i, Disc.UY] + s * (discs[i, Disc.VY] + 0.5 * s * discs[i, Disc.AY]))
-    around = discs[i, Disc.RADIUS] + BOX_MARGIN * extent(discs, i, now)
-    return x - around, y - around, x + around, y + around
-
-
-@compiled
 def box_size(i, grid):
     """The longer side of a disc's box."""
     boxes = grid.boxes
@@ -246,12 +236,13 @@ def leave(i, grid, layers):
 
 
 @compiled
-def neighbours(i, left, bottom, right, top, grid, layers, count):
-    """Discs other than i whose boxes overlap a part of that of i, each once, into `found` after the first `count`.
+def neighbours(i, grid, layers, count):
+    """Discs other than i whose boxes overlap that of i, each once, into `found` after the first `count`.
 
     Returns how many have been found then.
     """
     mask, row = grid.heads.shape[0] - 1, _row(grid)
+    left, bottom, right, top = grid.boxes[i]
     for k in range(grid.layer[i], layers):
         first_x, first_y, last_x, last_y = _cells(left, bottom, right, top, k, grid)
         for kind in range(2 * k, 2 * k + (2 if k == grid.layer[i] and k > 0 else 1)):
@@ -267,7 +258,7 @@ def neighbours(i, left, bottom, right, top, grid, layers, count):
 
 @compiled
 def _look_into(entry, kind, i, box, x, y, left_most, lowest, k, count, grid):
-    """Add the discs of a bucket, from an entry on, whose boxes overlap a part of that of i.
+    """Add the discs of a bucket, from an entry on, whose boxes overlap that of i.
 
     Each in the cell of the left bottom corner of what overlaps. Which do is hard to predict for a processor: it is
     counted rather than branched upon.
@@ -333,8 +324,7 @@ def list_pairs(pairs, grid):
         return NONE, layers
     # from the last on, so that those entered have higher numbers
     for i in range(grid.boxes.shape[0] - 1, -1, -1):
-        left, bottom, right, top = grid.boxes[i]
-        near = neighbours(i, left, bottom, right, top, grid, layers, 0)
+        near = neighbours(i, grid, layers, 0)
         sort(grid.found, near)
         for k in range(near - 1, -1, -1):
             count += 1

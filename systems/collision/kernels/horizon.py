@@ -24,7 +24,6 @@ from pinjoint.systems.collision.kernels.time_of_impact import (
     first_touch,
     is_straight,
     nearest,
-    pass_by,
     pull_noise,
     relative_motion,
     relative_state,
@@ -39,15 +38,6 @@ LARGEST_CORRECTION = 1e-3  # of the step of persistent contact
 
 
 @compiled
-def is_joined(i, j, constraints):
-    """True if two discs never collide."""
-    k = constraints.first[i]
-    while k < constraints.first[i + 1] and constraints.partners[k] != j:
-        k += 1
-    return k < constraints.first[i + 1]
-
-
-@compiled
 def impact_on(path, i, j, start, discs, constraints, end):
     """Time at which two discs next touch while they approach, up to `end`; INFINITY if they do not.
 
@@ -55,15 +45,13 @@ def impact_on(path, i, j, start, discs, constraints, end):
     """
     straight = is_straight(j, discs)
     reach = discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS]
-    if not straight and pass_by(path, reach):
-        return INFINITY
     noise, growth = speed_noise(discs, i, j, start), pull_noise(discs, i, j)
     if straight:
         tx, ty, shared = discs[j, Disc.TX], discs[j, Disc.TY], discs[j, Disc.SHARED]
         time = start + first_touch(path, tx, ty, shared, reach, noise, growth, end - start, False)
     else:
         time = start + first_approach(path, reach, noise, growth, end - start, False)
-    if time > end or is_joined(i, j, constraints) or find_persistent(i, j, constraints) != NONE:
+    if time > end or find_persistent(i, j, constraints) != NONE:
         return INFINITY
     if discs[i, Disc.STEP] < INFINITY or discs[j, Disc.STEP] < INFINITY:
         return _on_bent_paths(time, i, j, start, reach, discs)
@@ -141,8 +129,7 @@ def _fill(most, discs, grid, constraints, queue, numbers, counts):
     for i in range(discs.shape[0]):
         if is_held(i, discs):
             continue
-        left, bottom, right, top = grid.boxes[i]
-        near = neighbours(i, left, bottom, right, top, grid, layers, 0)
+        near = neighbours(i, grid, layers, 0)
         grid.found[near] = i  # and the step of its persistent contacts
         for k in range(near + 1):
             if not schedule_impact(i, grid.found[k], discs, constraints, queue, numbers, counts):

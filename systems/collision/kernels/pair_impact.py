@@ -85,7 +85,7 @@ def _newton(i, j, discs, numbers):
         return 0.0, 0.0, 0.0, 0.0, 0.0
     nx, ny = dx / distance, dy / distance
     rate = nx * vx + ny * vy
-    slow, bounce = rest_speed(i, j, discs, numbers[Number.REST_HEIGHT], now), discs[j, Disc.BOUNCE]
+    slow, bounce = rest_speed(i, j, discs, now), discs[j, Disc.BOUNCE]
     compliance = discs[i, Disc.WX] * nx * nx + discs[i, Disc.WY] * ny * ny
     compliance += discs[j, Disc.WX] * nx * nx + discs[j, Disc.WY] * ny * ny
     if rate >= -slow or compliance == 0.0:
@@ -146,8 +146,7 @@ def _impacts_of(i, j, count, discs, grid, constraints, numbers, counts):
     if is_held(i, discs):
         return count
     now, end = numbers[Number.NOW], numbers[Number.HORIZON_END]
-    left, bottom, right, top = grid.boxes[i]
-    near = neighbours(i, left, bottom, right, top, grid, counts[Count.LAYERS], count)
+    near = neighbours(i, grid, counts[Count.LAYERS], count)
     for k in range(count, near):
         met = grid.found[k]
         first, second = min(i, met), max(i, met)

@@ -41,6 +41,7 @@ from pinjoint.systems.collision.kernels.pile_solver import (
 from pinjoint.systems.collision.kernels.time_of_impact import (
     INFINITY,
     displacement_at,
+    rim,
     smaller_radius,
     velocity_at,
 )
@@ -163,9 +164,8 @@ def _report_impacts(active, h, discs, pile, report, numbers, counts):
                 (ivx, ivy), (jvx, jvy) = velocity_after(i, pile), velocity_after(j, pile)
                 vx, vy = jvx - ivx, jvy - ivy
                 loss = -0.5 * impulse * (before + nx * vx + ny * vy)
-                x = discs[i, Disc.OX] + discs[i, Disc.UX] + discs[i, Disc.RADIUS] * nx
-                y = discs[i, Disc.OY] + discs[i, Disc.UY] + discs[i, Disc.RADIUS] * ny
-                enter_impact(i, j, numbers[Number.NOW], impulse, loss, (x, y), report, counts)
+                place = rim(i, nx, ny, discs, numbers[Number.NOW])
+                enter_impact(i, j, numbers[Number.NOW], impulse, loss, place, report, counts)
 
 
 @compiled

@@ -19,14 +19,13 @@ from pinjoint.systems.collision.columns import (
 )
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.grid import emptied, enclose, enter, neighbours, set_layers, sort
-from pinjoint.systems.collision.kernels.horizon import is_joined
 from pinjoint.systems.collision.kernels.persistent_contact import (
     enter_persistent,
     find_persistent,
     forget_persistent,
     is_held,
 )
-from pinjoint.systems.collision.kernels.time_of_impact import nearest, smaller_radius
+from pinjoint.systems.collision.kernels.time_of_impact import nearest, relative_motion, smaller_radius
 
 TRAVEL = 0.45  # of two discs relative to one another in a longer step than the shortest: radii of the smaller
 # Shift that impacts may pass on to a disc in a step, as a share of the travel of the fastest disc, or of a radius.
@@ -86,7 +85,7 @@ def find_pairs(h, measured, discs, grid, constraints, pile, numbers, counts):
             return reason
         measured = False
     if not measured:
-        _measure_pairs(discs, pile, counts)
+        _measure_pairs(discs, pile, numbers, counts)
     return Reason.DONE
 
 
@@ -108,12 +107,11 @@ def _list_pairs(h, discs, grid, constraints, pile, numbers, counts):
         return Reason.GRID_FULL
     pairs = 0
     for i in range(discs.shape[0]):
-        left, bottom, right, top = grid.boxes[i]
-        near = neighbours(i, left, bottom, right, top, grid, layers, 0)
+        near = neighbours(i, grid, layers, 0)
         sort(grid.found, near)
         for k in range(near):
             j = grid.found[k]
-            if (is_held(i, discs) and is_held(j, discs)) or is_joined(i, j, constraints):
+            if is_held(i, discs) and is_held(j, discs):
                 continue
             if pairs < pile.forces.shape[0]:
                 entry = find_persistent(j, i, constraints)
@@ -163,18 +161,16 @@ def enter_pushing_pairs(discs, constraints, pile, counts):
 
 
 @compiled
-def _measure_pairs(discs, pile, counts):
+def _measure_pairs(discs, pile, numbers, counts):
     """Fill in the columns of PilePair of all listed pairs, whose discs all begin their paths now."""
     for k in range(counts[Count.LISTED]):
         i, j = pile.pairs[k, 0], pile.pairs[k, 1]
-        dx = (discs[j, Disc.OX] - discs[i, Disc.OX]) + (discs[j, Disc.UX] - discs[i, Disc.UX])
-        dy = (discs[j, Disc.OY] - discs[i, Disc.OY]) + (discs[j, Disc.UY] - discs[i, Disc.UY])
+        dx, dy, vx, vy, _, _ = relative_motion(discs, i, j, numbers[Number.NOW])
         dx, dy, _ = nearest(dx, dy, j, discs)
         distance = math.sqrt(dx * dx + dy * dy)
         nx, ny = 1.0, 0.0
         if distance > 0.0:
             nx, ny = dx / distance, dy / distance
-        vx, vy = discs[j, Disc.VX] - discs[i, Disc.VX], discs[j, Disc.VY] - discs[i, Disc.VY]
         pair = pile.near[k]
         pair[PilePair.NX], pair[PilePair.NY] = nx, ny
         pair[PilePair.GAP] = distance - (discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS])

@@ -98,7 +98,7 @@ def _make_contact(c, k, h, discs, pile, numbers):
 def bounces(speed, i, j, h, discs, pile, numbers):
     """True if discs bounce: `speed` (of separation, m/s) exceeds what free fall gives in two steps, in approach."""
     slow = 2.0 * h * max(pile.pull[i], pile.pull[j])
-    return speed < -slow and speed < -rest_speed(i, j, discs, numbers[Number.REST_HEIGHT], numbers[Number.NOW])
+    return speed < -slow and speed < -rest_speed(i, j, discs, numbers[Number.NOW])
 
 
 @compiled

@@ -10,7 +10,7 @@ All are evaluated along the path, which keeps the digits that expanded coefficie
 
 import math
 
-from pinjoint.systems.collision.columns import EPSILON, SHARED_END, SHARED_START, SPEED_NOISE, Disc
+from pinjoint.systems.collision.columns import EPSILON, REST_HEIGHT, SHARED_END, SHARED_START, SPEED_NOISE, Disc
 from pinjoint.systems.collision.kernels import compiled
 
 INFINITY = math.inf
@@ -214,28 +214,16 @@ def touch_speed(discs, i, j, time):
 
 
 @compiled
-def rest_speed(i, j, discs, rest_height, time):
+def rest_speed(i, j, discs, time):
     """Speed (m/s) of two discs from each other below which they stay in contact: √(2 g h).
 
-    g is the larger acceleration of the two, h the height that is not worth a bounce.
+    g is the larger acceleration of the two, h the height that is not worth a bounce, REST_HEIGHT radii.
     """
     speed = touch_speed(discs, i, j, time)
     if discs[j, Disc.BOUNCE] < 1.0:
         radius = smaller_radius(i, j, discs)
-        speed = max(speed, math.sqrt(2.0 * pull_on(discs, i, j) * rest_height * radius))
+        speed = max(speed, math.sqrt(2.0 * pull_on(discs, i, j) * REST_HEIGHT * radius))
     return speed
-
-
-@compiled
-def pass_by(path, reach):
-    """True if two discs without relative acceleration pass one another by: what first_approach finds then, sooner."""
-    dx, dy, vx, vy, ax, ay = path
-    if ax != 0.0 or ay != 0.0:
-        return False
-    if dx * vx + dy * vy >= 0.0:
-        return True
-    passing = dx * vy - dy * vx
-    return (vx * vx + vy * vy) * reach * reach < passing * passing and dx * dx + dy * dy > reach * reach
 
 
 @compiled

@@ -88,7 +88,8 @@ def blend_cover(pixels, cover, touched, clip, colour, opacity):
             for column in range(len(line)):
                 product = np.uint32(np.uint32(covered[column]) * opaque + np.uint32(128))
                 line[column] = mixed(line[column], colour, (product + (product >> _EIGHT)) >> _EIGHT)
-            covered[:] = 0
+            for column in range(len(covered)):
+                covered[column] = 0
             touched[row, block] = 0
 
 

@@ -157,7 +157,7 @@ def test_what_contacts_take_is_no_work() -> None:
 
 def taken(*sessions: Session) -> int:
     """How many steps of crowds these have taken since they began."""
-    lists = [session.simulation._driven_collisions._neighbours for session in sessions]
+    lists = [session.simulation._driven_steps._neighbours for session in sessions]
     return sum(int(near.driven.whole[Whole.CROWDS]) for near in lists)
 
 

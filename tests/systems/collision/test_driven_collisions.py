@@ -563,7 +563,7 @@ def test_impacts_that_were_not_reflected_to_the_end_are_told(drag: float) -> Non
     session.environment.drag = drag
     session.run(steps=1)
     run = session.simulation
-    flying = run.programs.flying or run._driven_collisions._neighbours.driven
+    flying = run.programs.flying or run._driven_steps._neighbours.driven
     flying.group.cut_short[0] = 2
     session.run(steps=1)
     assert told in run.said
@@ -596,7 +596,7 @@ def test_contacts_that_no_forces_close_are_counted_and_told() -> None:
     assert driven.whole[Whole.PHASE] == Phase.HELD  # the step is accepted
     assert driven.whole[Whole.UNCLOSED] == 1
     assert driven.real[Real.UNCLOSED] == pytest.approx(0.01, rel=1e-6)
-    session.simulation._driven_collisions.unclosed = 1, 0.01
+    session.simulation._driven_steps.unclosed = 1, 0.01
     assert "In one step no forces were found that close all contacts" in session.simulation.warning
     assert "1.00 % of a radius" in session.simulation.warning
 

@@ -18,7 +18,7 @@ def grid_of(boxes: np.ndarray) -> tuple[Grid, np.ndarray]:
 
 
 def found(i: int, grid: Grid, layers: int) -> list[int]:
-    count = neighbours(i, *grid.boxes[i], grid, layers, 0)
+    count = neighbours(i, grid, layers, 0)
     return grid.found[:count].tolist()
 
 

@@ -18,20 +18,20 @@ from tests.systems.collision.test_driven_collisions import gaps_of, truss
 
 def listed(session: Session) -> int:
     """How often pairs were listed since the document changed."""
-    return int(session.simulation._driven_collisions._neighbours.driven.whole[Whole.LISTS])
+    return int(session.simulation._driven_steps._neighbours.driven.whole[Whole.LISTS])
 
 
 def test_a_step_looks_up_nothing_and_an_edit_does() -> None:
     session = Session(lattice(200, damping=1.0))
     session.step()
-    near = session.simulation._driven_collisions._neighbours.driven
+    near = session.simulation._driven_steps._neighbours.driven
     for _ in range(5):
         session.step()
     assert listed(session) == 1
     session.particles[3].radius = 0.06
     session.step()
     assert listed(session) == 1
-    assert session.simulation._driven_collisions._neighbours.driven is not near
+    assert session.simulation._driven_steps._neighbours.driven is not near
 
 
 @pytest.mark.parametrize("count", [20, ALL_PAIRS_DISCS + 20])

@@ -241,7 +241,7 @@ def seen(session: Session) -> Any:
         shown += [(box.text, box.caret, box.marked) for box in form.boxes]
     if isinstance(scene, ForceMethod) and scene.guide is not None:
         shown += [scene.guide.part, len(scene.guide.sets), scene.guide.refusal, scene.hint(session)]
-        shown += [repr(camera) for camera in scene.cameras(session)]
+        shown += [repr(view.camera) for _, view in scene.stages(session)]
     return shown
 
 

@@ -22,6 +22,7 @@ from pinjoint.systems.program.blocks import Layout
 from pinjoint.systems.program.reordered import cores
 from tests.benchmarks.models import lattice
 from tests.reference import bits
+from tests.reference.models import model, particle, rod
 
 WIDTH, HEIGHT = 7, 5
 
@@ -33,30 +34,20 @@ def net() -> dict[str, Any]:
     at = {(x, y): f"P{numbers[y * WIDTH + x]}" for x in range(WIDTH) for y in range(HEIGHT)}
     pairs = [(p, (p[0] + dx, p[1] + dy)) for p in at for dx, dy in ((1, 0), (0, 1), (1, 1))]
     rods = [
-        {
-            "name": f"{at[a]}-{at[b]}",
-            "between": [at[a], at[b]],
-            "damping": 2,
-            "tensile_strength": 60,
-            "compressive_strength": 60,
-        }
-        for a, b in pairs
-        if b in at
+        rod(at[a], at[b], damping=2, tensile_strength=60, compressive_strength=60) for a, b in pairs if b in at
     ]
-    particles = [{"name": name, "position": list(p), "fixed": [p[0] == 0] * 2} for p, name in at.items()]
+    particles = [particle(name, *p, fixed=[p[0] == 0] * 2) for p, name in at.items()]
     ramp = {"kind": "ramp", "start": 0.0002, "duration": 0.001}
-    return {
-        "format": "pinjoint model",
-        "version": 1,
-        "particles": [particles[i] for i in rng.permutation(len(particles))],
-        "rods": [rods[i] for i in rng.permutation(len(rods))],
-        "loads": [
+    return model(
+        [particles[i] for i in rng.permutation(len(particles))],
+        [rods[i] for i in rng.permutation(len(rods))],
+        loads=[
             {"on": at[WIDTH - 1, y], "force": [5 * y, -40], "history": ramp | {"start": 1e-4 * y}}
             for y in (3, 0, 2)
         ],
-        "environment": {"acceleration": [0, -9.81], "drag": 3},
-        "settings": {"integrator": "velocity_verlet", "time_step": 1e-5, "collisions": False},
-    }
+        environment={"acceleration": [0, -9.81], "drag": 3},
+        settings={"integrator": "velocity_verlet", "time_step": 1e-5, "collisions": False},
+    )
 
 
 @pytest.fixture
@@ -74,7 +65,7 @@ def run(on: int, steps: int = 700, *, compiled: bool = False) -> Session:
         patch.setenv(CORES, str(on))
         session = Session.open(net())
         if compiled:
-            session.simulation.program.load()
+            session.simulation.program.module.load()
         assert session.run(steps=steps) == "time reached"
     return session
 
@@ -84,15 +75,15 @@ def assert_same(one: Session, other: Session) -> None:
 
 
 def test_a_layout_has_everything_once_and_blocks_that_touch_nobody(small_blocks: None) -> None:
-    model = models.load(net())
-    made = Layout.of(model)
-    assert sorted(made.particles) == list(range(model.particles.count))
-    assert sorted(made.rods) == list(range(model.rods.count))
-    assert (made.particles[made.row] == np.arange(model.particles.count)).all()
-    assert (made.particles[made.ends] == model.rods.between[made.rods]).all()
+    whole = models.load(net())
+    made = Layout.of(whole)
+    assert sorted(made.particles) == list(range(whole.particles.count))
+    assert sorted(made.rods) == list(range(whole.rods.count))
+    assert (made.particles[made.row] == np.arange(whole.particles.count)).all()
+    assert (made.particles[made.ends] == whole.rods.between[made.rods]).all()
     blocks = len(made.first_rod) - 2
     assert blocks % layout.SHARES == 0
-    assert model.rods.count / blocks <= layout.BLOCK
+    assert whole.rods.count / blocks <= layout.BLOCK
     for block in range(blocks):
         ends = made.ends[made.first_rod[block] : made.first_rod[block + 1]]
         assert (made.first_particle[block] <= ends).all()
@@ -103,9 +94,9 @@ def test_a_layout_has_everything_once_and_blocks_that_touch_nobody(small_blocks:
 def test_few_rods_are_between_blocks_however_a_model_is_numbered(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(layout, "BLOCK", 1250)
     for at_random in (False, True):
-        model = lattice(10_000, at_random=at_random)
-        made = Layout.of(model)
-        assert made.first_rod[-1] - made.first_rod[-2] < 0.12 * model.rods.count
+        whole = lattice(10_000, at_random=at_random)
+        made = Layout.of(whole)
+        assert made.first_rod[-1] - made.first_rod[-2] < 0.12 * whole.rods.count
 
 
 def test_the_number_of_cores_changes_no_bit(small_blocks: None) -> None:

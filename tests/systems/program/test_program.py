@@ -87,7 +87,7 @@ def assert_identical(document: Model, integrator: str, mods: list[Any], steps: i
     settings = document.get("settings", {}) | {"integrator": integrator, "time_step": size}
     session = Session.open(document | {"settings": settings}, mods)
     session.simulation.advance(0)
-    stages = Stages(session.model, session.simulation.programs.compiled.systems)
+    stages = Stages(session.model, [s for s in session.simulation.plan if s.kernel])
     assert session.run(steps=steps) == "time reached"
     stages.run(integrator, size, steps)
     nodes, clock = session.particles, session.model.clock

@@ -36,7 +36,7 @@ def test_a_force_is_seen_without_its_diagram_and_only_then() -> None:
     assert len(tips(model)) == 1
     assert "load (kN)" in picture_of(model).texts
     assert len(tips(model, all_diagrams=True)) == 2, "its parts"
-    model.tag(model.particles["B"], DiagramShown)
+    model.tag_only([model.particles["B"]], DiagramShown)
     assert len(tips(model)) == 2
 
 

@@ -236,7 +236,7 @@ def test_the_largest_scale_that_a_model_can_have_leaves_numbers_to_draw_with() -
 def test_only_tagged_rods_if_only_these_are_wanted() -> None:
     _, session = shown(portal_at_rest(), MOMENT)
     session.view.all_diagrams = False
-    session.model.tag(session.model.rods["BC"], DiagramShown)
+    session.model.tag_only([session.model.rods["BC"]], DiagramShown)
     picture = compose(session.model, session.view, LIGHT)
     assert [*all_areas(picture)] == [session.model.rods["BC"].row]
 

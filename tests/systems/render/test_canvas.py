@@ -29,7 +29,7 @@ def colour_at(surface: pygame.Surface, pixel: object) -> tuple[int, ...]:
 
 def test_the_triangle_on_a_surface() -> None:
     model = triangle()
-    model.tag(model.rods["BC"], Selected)
+    model.tag_only([model.rods["BC"]], Selected)
     view = View(camera=Camera(centre=(1.0, 0.5), scale=200.0))
     surface = blank()
     Canvas().draw(surface, compose(model, view, LIGHT))

@@ -89,8 +89,7 @@ def test_a_rod_without_force_is_black_and_reads_zero() -> None:
 
 def test_only_marked_elements_show_their_diagrams() -> None:
     model = triangle()
-    model.tag(model.rods["CA"], DiagramShown)
-    model.tag(model.particles["A"], DiagramShown)
+    model.tag_only([model.rods["CA"], model.particles["A"]], DiagramShown)
     texts = picture_of(model).texts
     assert "20.07 kN" in texts
     assert "20.01 kN" in texts

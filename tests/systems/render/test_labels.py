@@ -46,7 +46,7 @@ def random_model(seed: int, particles: int, rods: int) -> Model:
 def test_texts_never_overlap_and_stay_in_the_viewport(seed: int, n: int, size: tuple, problem: bool) -> None:
     width, height, ratio = size
     model = random_model(seed, n, 3 * n)
-    model.tag(model.rods[0], Selected)
+    model.tag_only([model.rods[0]], Selected)
     status = Status(
         1.2e-3, 1e-3, "running", "Esc stops", "It diverged: a time step of 1 s is too large." * problem
     )
@@ -84,7 +84,7 @@ def test_without_room_the_largest_values_and_what_is_selected_come_first() -> No
 
 def test_the_values_of_what_is_selected_come_before_larger_ones() -> None:
     model = triangle()
-    model.tag(model.rods["CA"], Selected)
+    model.tag_only([model.rods["CA"]], Selected)
     texts = picture_of(model, all_diagrams=True).texts
     assert texts.index("20.07 kN") < texts.index("−198.0 kN") < texts.index("−28.34 kN")
 
@@ -103,8 +103,8 @@ def test_very_short_rods_show_no_values_and_say_so() -> None:
 def test_names_of_all_show_only_where_there_are_few() -> None:
     model = random_model(1, 20, 30)
     assert not [text for text in picture_of(model).texts if text.startswith(("particle", "rod"))]
-    model.tag(model.rods["rod 3"], Selected)
-    model.tag(model.particles["particle 2"], Hovered)
+    model.tag_only([model.rods["rod 3"]], Selected)
+    model.tag_only([model.particles["particle 2"]], Hovered)
     assert {"rod 3", "particle 2"} <= set(picture_of(model, pointer=(0.0, 0.0)).texts)
     assert "particle 2" not in picture_of(model).texts  # nothing points at it
 

@@ -34,7 +34,7 @@ def test_rods_too_short_for_diagrams_take_the_colour_of_their_force() -> None:
     force = np.zeros(model.rods.count)
     force[:100], force[100:300] = 5.0, -5.0
     model.writable("rods.axial_force")[...] = force
-    model.tag(model.rods[0], Selected)
+    model.tag_only([model.rods[0]], Selected)
     picture = compose(model, view_of(model), LIGHT)
     assert not [mark for mark in picture.marks if isinstance(mark, Bars)]
     found = {

@@ -38,9 +38,8 @@ def test_selection_hovering_and_yielding_show() -> None:
     model.rods["BC"].compressive_strength = 198.0
     model.rods["CA"].compressive_strength = 198.0
     fill(model, "rods.yielding", [False, True, True])
-    model.tag(model.rods["BC"], Selected)
-    model.tag(model.particles["A"], Selected)
-    model.tag(model.rods["AB"], Hovered)
+    model.tag_only([model.rods["BC"], model.particles["A"]], Selected)
+    model.tag_only([model.rods["AB"]], Hovered)
     picture = picture_of(model, pointer=(0.0, 0.0))
     view = view_of(model)
     a, b, c = view.camera.to_pixels(model.particles.position)
@@ -133,8 +132,8 @@ def test_selected_grid_is_red_and_hidden_grids_are_not_drawn() -> None:
     first, second = model.create(Grid, 2, name=["grid 1", "grid 2"], shown=[True, False])
     assert LIGHT.grid[:3] == (200, 200, 200)
     lines = len(marks_of(picture_of(model), Panel, LIGHT.grid))
-    for grid in (first, second):
-        model.tag(grid, Selected)
+    for selected in ([first], [first, second]):
+        model.tag_only(selected, Selected)
         assert len(marks_of(picture_of(model), Panel, LIGHT.selected)) == lines > 0
         assert not marks_of(picture_of(model), Panel, LIGHT.grid)
 
@@ -158,7 +157,7 @@ def test_discs_of_any_size_are_drawn_by_few_lines(radius: float) -> None:
 
 def test_every_mark_of_an_element_says_whose_it_is() -> None:
     model = triangle()
-    model.tag(model.rods["AB"], Selected)
+    model.tag_only([model.rods["AB"]], Selected)
     fill(model, "particles.displacement", [(0, 0), (0.5, 0), (0, 0)])
     picture = picture_of(model, all_diagrams=True, legend=False)
     marks = [mark for mark in picture.marks if mark.of]

@@ -38,7 +38,7 @@ def texts_of(element: ET.Element) -> list[str]:
 
 def test_every_element_is_one_group_with_its_path_as_id() -> None:
     model = triangle()
-    model.tag(model.rods["BC"], Selected)
+    model.tag_only([model.rods["BC"]], Selected)
     picture = picture_of(model, all_diagrams=True)
     root = svg_of(picture, model)
     groups = groups_of(root)

@@ -44,7 +44,7 @@ def test_rods_take_its_colours_only_where_they_are_asked_for() -> None:
     assert free.of[1].tolist() == [2]
     assert {"14.2 %", "BC 99.0 %: closest to yielding", "utilisation 0 to 100 %"} <= set(picture.texts)
     assert len(marks_of(picture, Panel, shade(LIGHT, 1.0))) == 1
-    model.tag(model.rods["BC"], Selected)
+    model.tag_only([model.rods["BC"]], Selected)
     assert marks_of(picture_of(model, utilisation=True), Strokes, shade(LIGHT, 1.0)), (
         "a selection hides nothing"
     )

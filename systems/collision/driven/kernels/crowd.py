@@ -102,7 +102,7 @@ def _meets(driven, k, h):
 
 
 @compiled
-def begin_crowd(driven, account, place, speed):
+def begin_crowd(driven, account, speed):
     """Gather the contacts of a crowd, and carry out its impacts: `speed` is then that after them."""
     whole, group = driven.whole, driven.group
     count, members, least = 0, 0, math.inf
@@ -129,35 +129,34 @@ def begin_crowd(driven, account, place, speed):
     whole[Whole.CHOSEN], whole[Whole.MEMBERS], whole[Whole.TURN] = count, members, 0
     driven.real[Real.CROWD_TOLERANCE] = 0.1 * CLOSED_GAP * least
     copy_motion(speed, driven.ahead_speed, speed.shape[0])
-    before = _energy(driven, speed)
-    _collide_all(driven, before, place, speed)
-    account[Account.DISSIPATED_IMPACT] += before - _energy(driven, speed)
-    driven.real[Real.CROWD_LOSS] = before - _energy(driven, speed)
+    _load(driven, speed)
+    before = _energy(driven)
+    _collide_all(driven, before, speed)
+    _load(driven, speed)
+    driven.real[Real.CROWD_LOSS] = before - _energy(driven)
+    account[Account.DISSIPATED_IMPACT] += driven.real[Real.CROWD_LOSS]
     copy_motion(speed, driven.velocity, speed.shape[0])
     whole[Whole.FRESH] = 0
 
 
 @compiled
-def _energy(driven, speed):
+def _energy(driven):
     """Of the motion of the members of a crowd, J."""
-    energy = 0.0
+    energy, motion, mobility = 0.0, driven.group.motion, driven.group.mobility
     for m in range(driven.whole[Whole.MEMBERS]):
-        i = driven.group.members[m]
-        if i < speed.shape[0]:
-            for d in range(2):
-                if driven.weight[i, d] > 0.0:
-                    energy += 0.5 * speed[i, d] * speed[i, d] / driven.weight[i, d]
+        for d in range(2):
+            if mobility[m, d] > 0.0:
+                energy += 0.5 * motion[m, d] * motion[m, d] / mobility[m, d]
     return energy
 
 
 @compiled
-def _collide_all(driven, energy, place, speed):
+def _collide_all(driven, energy, speed):
     """Poisson's law: e times the impulse of the plastic impact is added where two particles approach faster than two steps
     of free fall make them, and would rise more than SETTLING_HEIGHT.
     """
     group, h, back = driven.group, driven.real[Real.CROWD_LENGTH], False
     count = driven.whole[Whole.CHOSEN]
-    _load(driven, speed)
     for c in range(count):
         k = driven.touching[c]
         i, j = driven.pairs[k, 0], driven.pairs[k, 1]
@@ -180,12 +179,7 @@ def _collide_all(driven, energy, place, speed):
     if not back:
         return
     separate_motion(driven.whole[Whole.MEMBERS], count, driven.real[Real.CROWD_TOLERANCE] / h, group)
-    bounced = 0.0
-    for m in range(driven.whole[Whole.MEMBERS]):
-        for d in range(2):
-            if group.mobility[m, d] > 0.0:
-                bounced += 0.5 * group.motion[m, d] * group.motion[m, d] / group.mobility[m, d]
-    if bounced <= energy * (1.0 + ROUND_OFF):
+    if _energy(driven) <= energy * (1.0 + ROUND_OFF):
         _store(driven, speed)
         for c in range(count):
             k = driven.touching[c]

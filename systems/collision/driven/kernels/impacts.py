@@ -2,7 +2,7 @@
 
 import math
 
-from pinjoint.systems.collision.columns import NONE, Contact, Detail
+from pinjoint.systems.collision.columns import NONE, REST_HEIGHT, Contact, Detail
 from pinjoint.systems.collision.driven.columns import Need, Real, Whole
 from pinjoint.systems.collision.driven.kernels.contacts import SETTLING_CONTACTS, SETTLING_HEIGHT
 from pinjoint.systems.collision.driven.kernels.pairs import chain_groups, end_groups, gap_of, opening, root_of
@@ -10,7 +10,6 @@ from pinjoint.systems.collision.driven.kernels.paths import TOUCHING_GAP, is_lef
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.impact import respond
 from pinjoint.systems.collision.kernels.projection import compliance
-from pinjoint.systems.collision.system import REST_HEIGHT
 from pinjoint.systems.program.entries import Account, Control
 
 SHORT_BOUNCE = 1.0 / 32.0  # of a step: half of how long a bounce lasts

@@ -12,7 +12,6 @@ from pinjoint.systems.collision.driven.kernels.pairs import gap_of, moves
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.grid import list_pairs as all_pairs
 from pinjoint.systems.collision.kernels.grid import set_box
-from pinjoint.systems.collision.kernels.horizon import is_joined
 from pinjoint.systems.program.entries import Control
 
 LISTED_AROUND = 0.5  # of the radius of a particle: the least margin within which others are listed
@@ -105,13 +104,22 @@ def _enclose(driven, listing, i, place, wider):
 @compiled
 def _may_meet(driven, listing, i, j, place, wider):
     """True if a particle and another, or an obstacle, are within reach; not if neither moves, or a rod joins them."""
-    if not (moves(driven, i) or moves(driven, j)) or is_joined(i, j, listing):
+    if not (moves(driven, i) or moves(driven, j)) or _are_joined(i, j, listing):
         return False
     gap, _, _ = gap_of(i, j, driven.position, place, driven.radius, driven.span)
     reach = driven.margin[i]
     if j < place.shape[0]:
         reach += driven.margin[j]
     return gap <= wider * reach
+
+
+@compiled
+def _are_joined(i, j, listing):
+    """True if a rod joins two particles."""
+    k = listing.first[i]
+    while k < listing.first[i + 1] and listing.partners[k] != j:
+        k += 1
+    return k < listing.first[i + 1]
 
 
 @compiled

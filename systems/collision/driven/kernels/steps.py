@@ -172,7 +172,7 @@ def _begin_crowd(driven, control, account, place, speed):
     real[Real.END] = math.inf if h == control[Control.STEP_SIZE] and not whole[Whole.LANDING] else end
     control[Control.STEP_SIZE] = min(control[Control.STEP_SIZE], real[Real.HELD_LIMIT])
     driven.kept[Control.STEP_SIZE] = control[Control.STEP_SIZE]
-    begin_crowd(driven, account, place, speed)
+    begin_crowd(driven, account, speed)
     for k in range(account.shape[0]):
         driven.kept[control.shape[0] + k] = account[k]
     whole[Whole.KEEP] = 1
