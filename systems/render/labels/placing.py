@@ -144,6 +144,7 @@ def _beside(
     number = np.arange(len(tried)) - np.searchsorted(of[tried], of[tried])
     for begin, end in pairwise(_STAGES):
         now = tried[(number >= begin) & (number < end) & (found[of[tried]] < 0)]
+        now = now[(own[of[now]] == NOBODY) | occupancy.may_be_of(cells[now], own[of[now]], kin[of[now]])]
         now = now[occupancy.parts.own_is_nearest(boxes.some(now), own, kin, clearly[now])]
         _take(now, of[now], cells[now], found, occupancy)
     settled = np.flatnonzero(found >= 0)

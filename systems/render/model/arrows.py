@@ -184,7 +184,7 @@ def draw_arrows(
     low, high = sheet.viewport.corners
     _, _, seen = clip_segments(tail, tip, low - HEAD * u, high + HEAD * u)  # rims may be beyond all pixels
     tail, tip, across, neck, head = tail[seen], tip[seen], across[seen], neck[seen], head[seen]
-    sheet.occupancy.line(tail, tip, STRONG)
+    sheet.occupancy.line(tail, tip, STRONG, (kind, which[seen]))
     barb = 0.5 * head * across
     for ends in ((tail, tip), (neck - barb, neck + barb)):
         sheet.occupancy.parts.add((kind, which[seen]), *ends, u)

@@ -48,7 +48,7 @@ def _cut_through(sheet: Sheet, number: int, cut: Cut, joints: Rows, along: Point
     faces = np.stack([middle - half * along, middle + half * along])
     start, end, _ = dashed(sheet.centres[joints], faces, _DASH * u)
     sheet.marks.append(Strokes(start, end, 1.25 * u, ink))
-    sheet.occupancy.line(sheet.centres[joints], faces, STRONG)
+    sheet.occupancy.line(sheet.centres[joints], faces, STRONG, (_KEY, np.full(2, number)))
     across = np.array([-along[1], along[0]]) * _FACE * u
     sheet.marks.append(Strokes(faces - across, faces + across, 1.25 * u, ink))
     if not cut.label:

@@ -87,7 +87,7 @@ def draw_distributed_forces(sheet: Sheet) -> None:
         of = "rods", np.full(len(tips), row)
         if not shifted:  # a line through the tails
             sheet.marks.append(Strokes(tails[:-1], tails[1:], 1.25 * u, colour, (of[0], of[1][1:])))
-            sheet.occupancy.line(tails[:-1], tails[1:], STRONG)
+            sheet.occupancy.line(tails[:-1], tails[1:], STRONG, (of[0], of[1][1:]))
         draw_arrows(sheet, of, tails, np.tile(along, (len(tails), 1)), level, colour, of, 1.25)
         sheet.explain("load per length", tails, tips)
         if index in told:
@@ -212,7 +212,7 @@ def draw_arcs(
     forward /= np.hypot(*forward.T)[:, None]
     neck, across = points[:, -1], forward[:, ::-1] * [-1.0, 1.0]
     tip, barb = neck + head[:, None] * forward, 0.5 * head[:, None] * across
-    sheet.occupancy.line(first, last, STRONG)
+    sheet.occupancy.line(first, last, STRONG, (key, every))
     for parts in ((first, last, every), (neck - barb, neck + barb, rows), (neck, tip, rows)):
         sheet.occupancy.parts.add((key, parts[2]), *parts[:2], u)
     sheet.marks += [

@@ -135,7 +135,7 @@ def draw_rods(sheet: Sheet) -> None:
     for name, wanted in named.items():
         sheet.explain(name, *sheet.lines(sheet.chosen(wanted, sheet.rods))[:2])
     start, end, rows = sheet.lines()
-    sheet.occupancy.line(start, end, STRONG)
+    sheet.occupancy.line(start, end, STRONG, ("rods", rows))
     sheet.occupancy.parts.add(("rods", rows), start, end, width / 2, kind=LINE)
 
 
