@@ -113,9 +113,9 @@ def _columns(view: View, theme: Theme) -> tuple[list[list[Part]], tuple[float, f
     assert view.menu is not None
     menu, u, window = view.menu, view.pixel_ratio, view.camera.viewport
     between = Row((Gap(10.0), rule(theme.line, 7.0), Gap(10.0)))
-    for points, row in _SIZES:
+    for points, row, told in (*((*size, 0) for size in _SIZES), (*_SIZES[-1], 1)):  # below: that there is more
         number = iter(range(len(menu.entries)))
-        room = window.height - (4 * _EDGE + row * (bool(menu.title) + 1)) * u  # below: that there is more
+        room = window.height - (4 * _EDGE + row * (bool(menu.title) + told)) * u
         groups = [
             [_entry(tool, next(number), menu.at, theme, points, row) for tool in group] for group in menu.groups
         ]
