@@ -52,8 +52,8 @@ class History:
 
     def _record(self, inverse: Command) -> None:
         edit, self._clock = Edit(inverse, self._clock, self._key), None
-        run, concerns_runs = self._run, edit.clock is not None
-        if self._key is not None and _key_of(self._done.last) == self._key:
+        run, last, concerns_runs = self._run, self._done.last, edit.clock is not None
+        if self._key is not None and isinstance(last, Edit) and last.key == self._key:
             self._run = None if concerns_runs else run
             edit = merged(self._done.pop(), edit)
         elif run is not None and self._add_run(run):
@@ -171,10 +171,6 @@ class History:
         if before is None:
             return None
         return self._simulation.checkpoint(*(() if before.whole else ("clock",)))
-
-
-def _key_of(entry: Entry | None) -> Hashable | None:
-    return entry.key if isinstance(entry, Edit) else None
 
 
 def _title(command: Command) -> str:
