@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 61_655,
-    "files": 358,
-    "names": 3_484,  # functions, classes and constants of modules
-    "public names": 2_144,
-    "numbers": 1_331,  # other than 0, 1 and 2, in constants and defaults
+    "lines": 60_998,
+    "files": 353,
+    "names": 3_416,  # functions, classes and constants of modules
+    "public names": 2_077,
+    "numbers": 1_323,  # other than 0, 1 and 2, in constants and defaults
     "registers": 39,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 49_406,
+    "lines of tests": 49_147,
 }
 
 

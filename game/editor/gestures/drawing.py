@@ -309,7 +309,7 @@ class DrawElement(Drawing):
 
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
-        if isinstance(context.gesture, cls) or context.view.strip.contains(pixel):
+        if context.view.strip.contains(pixel):
             return None
         return cls(context, snapped_to_points(context.model, context.view, pixel))
 
