@@ -79,7 +79,7 @@ def test_nothing_of_a_template_is_left_in_a_program(integrator: str, form: str) 
     session = Session.open("hyperstatic_yield")
     session.settings.integrator = integrator
     simulation = session.simulation
-    writer = _writer(session.model, simulation.program.systems, simulation.integrator, form)
+    writer = _writer(session.model, simulation.program.plan, simulation.integrator, form)
     tree = ast.parse(writer.source())
     assert not any(isinstance(node, ast.Starred) for node in ast.walk(tree))
     assert not any(isinstance(node, ast.Name) and node.id == "insert" for node in ast.walk(tree))
@@ -91,7 +91,7 @@ def test_nothing_of_a_template_is_left_in_a_program(integrator: str, form: str) 
 
 def test_roles_follow_each_other_as_in_a_step() -> None:
     session = Session.open("hyperstatic_yield")
-    plan = session.simulation.program.systems
+    plan = session.simulation.program.plan
     roles = by_role(bind(system, session.model) for system in reversed(plan))
     found = [b.system.name for some in roles.values() for b in some]
     assert found == [
