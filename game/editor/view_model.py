@@ -14,7 +14,7 @@ from pinjoint.components.tags import Hovered
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import DrawRod
-from pinjoint.editor.readouts import own_readouts
+from pinjoint.editor.readouts import readouts
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
@@ -73,7 +73,7 @@ def show(context: Context, elapsed: float) -> None:
 def _show_readouts(context: Context) -> None:
     """All panels, and the order in which they came."""
     view = context.view
-    view.readouts = (*own_readouts(context), *context.panels())
+    view.readouts = tuple(readouts(context))
     latest, since = max(view.since.values(), default=0), view.since
     view.since = {
         english(readout.title): since.get(english(readout.title), latest + number)
