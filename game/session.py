@@ -164,7 +164,7 @@ class Session(Headless):
             self.view.menu = None
         self.exaggerate()
         try:
-            action.perform(self, pixel if pixel is not None else self.pointer)
+            action.perform(self, pixel if pixel is not None else self.view.pixel)
         except (Refusal, FieldError) as error:
             self.notice = str(error)
         self.scenes.apply(self)
@@ -228,7 +228,7 @@ class Session(Headless):
             self._record(key, pixel)
             self._open_files(key.removeprefix(FILES).splitlines())
             return
-        pixel = self.pointer if pixel is None else _near(pixel)
+        pixel = self.view.pixel if pixel is None else _near(pixel)
         press = Press(self, key, pixel)
         here = self.scene, self.view.menu is not None, self.view.help > 0, press.hit and press.hit.action
         if key == "double click" and self._clicked not in (None, here):

@@ -477,11 +477,6 @@ class Context:
         card = self.course.view if self.course is not None else None
         return stages + [(self._blank, view) for view in (self.footer, card) if view is not None]
 
-    @property
-    def pointer(self) -> Vector:
-        """The pixel where the pointer is; the middle of the view if it is outside."""
-        return self.view.pointer or self.view.camera.middle
-
     def exaggerate(self) -> None:
         """Let the automatic displacement scale suit the model, but not in the middle of a drag."""
         still = not self.time_passes or self.simulation.halted

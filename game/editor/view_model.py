@@ -181,8 +181,8 @@ def _flashes(context: Context) -> NDArray[np.float64]:
 def _preview(context: Context) -> Preview | None:
     try:
         if context.gesture is None:
-            return _end_pointed_at(context, context.pointer) if context.scene in LIVE else None
-        return context.gesture.preview(context, context.pointer)
+            return _end_pointed_at(context, context.view.pixel) if context.scene in LIVE else None
+        return context.gesture.preview(context, context.view.pixel)
     except Refusal as error:
         context.gesture, context.notice = None, str(error)
         return None

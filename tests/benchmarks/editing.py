@@ -122,7 +122,7 @@ def _drag(hand: Hand) -> None:
 
 
 def _pull(hand: Hand) -> None:
-    x, y = hand.session.pointer
+    x, y = hand.session.view.pixel
     hand.press("drag to", (x + 4.0, y + 3.0))
 
 
