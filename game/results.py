@@ -34,7 +34,7 @@ class Results:
 
     @classmethod
     def of(cls, model: Model, *, first_order: bool = False) -> Results:
-        """The results of a model; first_order: moments of forces are about original positions, not present ones."""
+        """The results of a model; first_order: places and levers are those of the original shape, not of the present one."""
         rods, particles = model.rods, model.particles
         place = particles.position if first_order else particles.position + particles.displacement
         force = _largest(rods.end_axial_force, rods.shear, particles.reaction, particles.applied_force)
@@ -42,10 +42,11 @@ class Results:
         moment = max(of_forces, _largest(rods.bending_moment, particles.reaction_moment))
         bowed = 0.0 if first_order else _by_bowing(model)
         sums = _sums(model, place, bowed, force, moment)
-        return cls(_of_rods(model, force, moment), _of_particles(model, force, moment), sums)
+        length = rods.original_length if first_order else rods.length
+        return cls(_of_rods(model, length, force, moment), _of_particles(model, force, moment), sums)
 
 
-def _of_rods(model: Model, force: float, moment: float) -> Table:
+def _of_rods(model: Model, length: Array, force: float, moment: float) -> Table:
     """N and utilisation of trusses; where rods bend, N, V and M at both ends, and the extremes between them."""
     rods, columns = model.rods, []
     if bends(model) or rods.distributed_force.any():
@@ -53,7 +54,7 @@ def _of_rods(model: Model, force: float, moment: float) -> Table:
         bearing = np.where(rods.distributed_force.any(axis=1), 1.0, stiff[:, 0])[:, None]
         every = np.arange(rods.count)
         moments, places = extremes(inner_forces(model, every, MOMENT))
-        moments, places = bearing * moments, places * rods.length[:, None]
+        moments, places = bearing * moments, places * length[:, None]
         places[~(np.abs(moments) > ROUNDING * moment)] = np.nan
         bows = stiff[:, 0] * np.abs(extremes(deflections(model, every))[0]).max(axis=1, initial=0.0)
         columns += _parts("end_axial_force", "N", ENDS, _KN, rods.end_axial_force, force)
