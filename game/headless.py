@@ -223,7 +223,9 @@ class Headless(Context):
         end_axial_force, end_rotation (rods, 2) and largest_moment, with its place; m, rad, kN, kN·m. Its `events` are
         yields, cables that slacken, collapses with their motion; status and message are those of the end. Raises ValueError.
 
-        >>> Session.open("three_bar_plastic").statics(load_factors=[1.0, 0.0]).final.axial_force.round(2).tolist()
+        >>> from pinjoint import Session
+        >>> s = Session.open("three_bar_plastic")
+        >>> s.statics(load_factors=[1.0, 0.0]).final.axial_force.round(2).tolist()
         [28.65, -40.51, 28.65]
         """
         from pinjoint.systems.statics.settle import settle
