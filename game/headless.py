@@ -226,7 +226,7 @@ class Headless(Context):
         >>> from pinjoint import Session
         >>> s = Session.open("three_bar_plastic")
         >>> s.statics(load_factors=[1.0, 0.0]).final.axial_force.round(2).tolist()
-        [28.65, -40.51, 28.65]
+        [28.7, -40.59, 28.7]
         """
         from pinjoint.systems.statics.settle import settle
         from pinjoint.systems.statics.state import Start
