@@ -31,17 +31,19 @@ class SecondOrder:
     def of(cls, model: Model, first: StaticState, exact: StaticState) -> SecondOrder | None:
         """That of two equilibria under the same load; None where it is less than LEAST."""
         by_theory = first.diagrams, exact.diagrams
-        forces = [max(largest(of["end_axial_force"]), largest(of["shear"])) for of in by_theory]
-        moments = [largest(of["largest_moment"][:, 0]) for of in by_theory]
-        compared: list[tuple[str, Array, Array, float]] = [
-            ("displacement", *(np.hypot(*state.displacement.T) for state in (first, exact)), 0.0),
-            *((name, *(of[name] for of in by_theory), forces[0]) for name in ("end_axial_force", "shear")),
-            ("bending_moment", *(of["bending_moment"] for of in by_theory), moments[0]),
-            ("largest_moment", *(np.abs(of["largest_moment"][:, 0]) for of in by_theory), moments[0]),
-        ]
+        force = max(largest(first.diagrams[name]) for name in ("end_axial_force", "shear"))
+        moved = [np.hypot(*state.displacement.T) for state in (first, exact)]
+        inside = [np.abs(of["largest_moment"][:, 0]) for of in by_theory]
+        compared: dict[str, tuple[list[Array], float]] = {
+            "displacement": (moved, largest(moved[0])),
+            "end_axial_force": ([of["end_axial_force"] for of in by_theory], force),
+            "shear": ([of["shear"] for of in by_theory], force),
+            "bending_moment": ([of["bending_moment"] for of in by_theory], largest(inside[0])),
+            "largest_moment": (inside, largest(inside[0])),
+        }
         found = None
-        for quantity, before, after, scale in compared:
-            size = np.abs(after - before) / (scale or largest(before) or np.inf)
+        for quantity, ((before, after), scale) in compared.items():
+            size = np.abs(after - before) / (scale or np.inf)
             if not size.size or size.max() <= (abs(found.share) if found else LEAST):
                 continue
             place = np.unravel_index(int(size.argmax()), size.shape)
