@@ -10,15 +10,17 @@ import numpy as np
 
 from pinjoint.components.language import begun, plural, tr
 from pinjoint.components.model import Model
+from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External, loose_bodies
-from pinjoint.systems.statics.factor import SOFT, pseudo_random, regular, soft_modes, unresisted
+from pinjoint.systems.statics.factor import SOFT, SURELY_HELD, pseudo_random, regular, soft_modes, unresisted
 from pinjoint.systems.statics.state import STABLE, Start, StaticState
 
 _REFINEMENTS = 4  # of a linear solution
 _REFINEMENTS_OF_BENDING = 40  # at most; few unless hundreds of rods divide a long member
+PUSHED = 1e-9  # of a load: what of it moves a mechanism; less is round-off
 FULL = 600  # unknowns up to which all modes, eigenvalues and singular values are computed
 MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 
@@ -39,8 +41,15 @@ class FirstOrder:
         self._factor = regular(self._matrix, self._measure.weight)
 
     @cached_property
+    def held(self) -> bool:
+        """True if every motion is resisted, and by so much that no digits are lost."""
+        return regular(self._matrix, self._measure.weight, -SURELY_HELD).definite
+
+    @cached_property
     def mechanisms(self) -> Array:
         """The motions of the unknowns that nothing resists, (N, k)."""
+        if self.held:
+            return np.zeros((self.structure.size, 0))
         count = regular(self._matrix, self._measure.weight, -SOFT).negative
         return unresisted(self._measure, self.structure.unmoved, self._matrix, self._factor, most=count)
 
@@ -73,17 +82,19 @@ class FirstOrder:
             )
             raise NoEquilibrium("limit reached", message)
         right = structure.gather(load)
-        solution = self._refined(right)
-        if float(right @ solution) < SOFT * structure.effort(solution, structure.unmoved):
+        solution, modes = self._refined(right), self.mechanisms
+        work, weight = modes.T @ right, self._measure.weight
+        pushed = largest(work) > PUSHED * np.sqrt(right @ (right / weight))
+        if pushed or float(right @ solution) < SOFT * structure.effort(solution, structure.unmoved):
+            solution = modes @ work if pushed else solution
             message = tr(
                 "Mechanism: the load moves {motion}, and the resistance is less than {share:g} of the stiffness of the rods"
                 " there. Add rods or supports there, or make the stiffnesses less unequal.",
                 motion=describe_motion(model, structure.spread(solution)[None]),
                 share=SOFT,
             )
-            raise NoEquilibrium("mechanism", message)
-        modes = self.mechanisms
-        return structure.spread(solution - modes @ (modes.T @ (self._measure.weight * solution)))
+            raise NoEquilibrium("mechanism", message, normalised(structure.spread(solution)))
+        return structure.spread(solution - modes @ (modes.T @ (weight * solution)))
 
     def _refined(self, right: Array) -> Array:
         """The solution of K u = f to its last digits."""
@@ -113,7 +124,7 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
     displacements of constrained directions as moved supports. factor: of forces and loads; all else acts in full.
     Raises NoEquilibrium, naming the particles, for a mechanism or a free body that the load moves.
     """
-    structure, start = Structure.of(model, "linear"), start or Start.present(model)
+    structure, start = Structure.of(model, FIRST_ORDER), start or Start.present(model)
     load = External.of(model).at(factor)
     for body in loose_bodies(structure, load):
         if body.pull:
@@ -162,7 +173,7 @@ class Indeterminacy:
         m rods between particles with f free directions have m − r states of self-stress and f − r mechanisms. A rigid end of
         a rod that bends counts as one more of the m, a rotation as a direction.
         """
-        structure = Structure.of(model, "linear").with_translations()
+        structure = Structure.of(model, FIRST_ORDER).with_translations()
         unsupported = replace(structure, fixed=np.zeros_like(structure.fixed)).with_translations()
         deformations, rank = structure.deformations, _rank(structure)
         static, internal = deformations - rank, deformations - _rank(unsupported)
@@ -171,7 +182,7 @@ class Indeterminacy:
 
 def mechanisms(model: Model) -> Array:
     """Motions (k, n, 2 or 3) that deform no rod, the largest of each 1; of large structures at most 20."""
-    structure = Structure.of(model, "linear").with_translations()
+    structure = Structure.of(model, FIRST_ORDER).with_translations()
     if structure.size <= FULL:
         modes = _null_space(structure.scaled_compatibility) / structure.measure[:, None]
     else:
@@ -188,7 +199,7 @@ def self_stress(model: Model) -> Array:
 
     Where members bend, and beside them the moments on all rigid ends, in the order of the rods (k, rods + ends).
     """
-    structure = Structure.of(model, "linear").with_translations()
+    structure = Structure.of(model, FIRST_ORDER).with_translations()
     compatibility = structure.compatibility(structure.unmoved)
     if structure.size <= FULL:
         states = _null_space(structure.scaled_compatibility.T) * structure.reaches[:, None]
@@ -261,7 +272,7 @@ def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Arra
     Müller-Breslau, it is the deflection that a unit displacement in its place causes; of a displacement, by Maxwell, that
     under a unit load there. Raises NoEquilibrium.
     """
-    theory = FirstOrder(model, Structure.of(model, "linear"))
+    theory = FirstOrder(model, Structure.of(model, FIRST_ORDER))
     structure, unit = theory.structure, np.zeros(theory.structure.fixed.shape)
     if quantity == "axial_force":
         pull = np.zeros_like(structure.difference)
