@@ -33,11 +33,11 @@ def _save_again(context: Context, pixel: Vector) -> None:
             file=file.name,
         )
     try:
-        context.save_as(file.path)
+        context.notice = context.document.save_as(file.path)
     except ModelError as error:
         context.notice = str(error)
 
 
 action("load", "d", "open a model", (PAUSE,))(lambda context, pixel: context.scenes.request_from_pause("load"))
 action("load", "ctrl+o", "open a model")(ACTIONS["load"].perform)
-action("new", "ctrl+n", "start a new model")(lambda context, pixel: context.open_here(Model()))
+action("new", "ctrl+n", "start a new model")(lambda context, pixel: context.documents.open(Model()))
