@@ -60,7 +60,7 @@ class SetState:
         return moment
 
     def without_rounding(self, length: Array) -> SetState:
-        """The same, in which what is nothing beside the largest force is 0; length: of the rods, levers of moments (rods,)."""
+        """The same, in which what is nothing beside the largest force is 0; length: of the rods, as levers (rods,)."""
         lever = length.max(initial=0.0)
         moments = self.end_moment / length[:, None]
         forces = (self.axial_force, self.reaction[:, :2], moments, self.reaction[:, 2:] / max(lever, 1e-300))
