@@ -451,8 +451,8 @@ def has_strength(world: World) -> bool:
 def bends_unchecked(world: World) -> NDArray[np.bool_]:
     """Of which rods utilisation leaves out the bending, for want of a section that knows its depth, (rods,)."""
     rods = world.tables["rods"]
-    bent: NDArray[np.bool_] = (rods.turning_shares > 0.0).any(axis=1)
-    return bent & np.isnan(rods.section_modulus)
+    found: NDArray[np.bool_] = (rods.turning_shares > 0.0).any(axis=1) & np.isnan(rods.section_modulus)
+    return found
 
 
 def utilisation(world: World) -> NDArray[np.float64]:
