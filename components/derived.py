@@ -13,6 +13,7 @@ from pinjoint.components.field import Column
 from pinjoint.components.load import CONSTANT
 from pinjoint.components.particle import DEFAULT_MASS
 from pinjoint.components.rod import DEFAULT_STIFFNESS
+from pinjoint.components.section import Section
 from pinjoint.components.table import Table
 from pinjoint.components.world import Derivation, World
 
@@ -66,6 +67,17 @@ def stiffnesses(world: World) -> None:
             known = rods.youngs_modulus * of_section
         automatic = _or_automatic(known, unknown)
         world.writable(f"rods.{name}")[...] = _or_automatic(rods.column(f"prescribed_{name}"), automatic)
+
+
+@derives("rods", "section_modulus", "section second_moment")
+def section_moduli(world: World) -> None:
+    """W of every rod whose section knows its depth; NaN of others."""
+    rods = world.tables["rods"]
+    known = {name: Section.named(name) for name in set(rods.section) if name is not None}
+    depths = [np.nan if (found := known.get(name)) is None else found.depth for name in rods.section]
+    world.writable("rods.section_modulus")[...] = rods.second_moment / (
+        0.5 * np.array(depths, dtype=np.float64)
+    )
 
 
 @derives("particles", "mass mobility", "prescribed_mass fixed rods.between rods.density rods.rest_length")

@@ -219,6 +219,13 @@ class Rod(Handle):
     load_shares: Field[Vector] = by_end(
         "m²", doc="What a slope of its ends adds to the area below its axis: (L₀², −L₀²)/12."
     )
+    section_modulus: Field[float | None] = derived(
+        "m³",
+        nullable=True,
+        absent="unknown",
+        doc="W = second moment / half the depth, which the section gives.",
+        shown=("cm³", 1e6),
+    )
     tension_limit: Field[float] = derived("kN", doc="Tensile strength; infinite if unlimited.")
     compression_limit: Field[float] = derived("kN", doc="Compressive strength; infinite if unlimited.")
     axial_force: Field[float] = derived(
@@ -441,14 +448,31 @@ def has_strength(world: World) -> bool:
     return bool(((rods.tension_limit < np.inf) | (rods.compression_limit < np.inf)).any())
 
 
-def utilisation(world: World, force: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
-    """|N| over the strength in that direction, of each rod (m,); NaN where it has none.
+def bends_unchecked(world: World) -> NDArray[np.bool_]:
+    """Of which rods utilisation leaves out the bending, for want of a section that knows its depth, (rods,)."""
+    rods = world.tables["rods"]
+    found: NDArray[np.bool_] = (rods.turning_shares > 0.0).any(axis=1) & np.isnan(rods.section_modulus)
+    return found
 
-    force: axial forces (kN), (m,); None: the present ones.
+
+def utilisation(world: World) -> NDArray[np.float64]:
+    """The largest stress of each rod, |N|/A + |M|/W, over the yield stress, (rods,); NaN where it has no strength.
+
+    Yield stresses are strengths over A, each in its direction. At both ends and where M is largest; of N alone where the
+    depth is unknown.
     """
     rods = world.tables["rods"]
-    force = rods.axial_force if force is None else force
-    limit = np.where(force < 0.0, rods.compression_limit, rods.tension_limit)
+    force, bent = rods.axial_force[:, None], np.zeros((rods.count, 1))
+    modulus = rods.section_modulus
+    if (known := ~np.isnan(modulus) & ~np.isnan(rods.area)).any():
+        moment, place = rods.largest_moment.T
+        ends = rods.end_axial_force
+        share = np.divide(place, rods.length, out=np.zeros(rods.count), where=rods.length > 0.0)
+        force = np.column_stack([ends, ends[:, 0] + share * (ends[:, 1] - ends[:, 0])])
+        lever = np.divide(rods.area, modulus, out=np.zeros(rods.count), where=known)
+        bent = lever[:, None] * np.abs(np.column_stack([rods.bending_moment, moment]))
+    pulled = (bent + force).max(axis=1) / rods.tension_limit
+    pressed = (bent - force).max(axis=1) / rods.compression_limit
     either = np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)
-    share: NDArray[np.float64] = np.where(either, np.abs(force) / limit, np.nan)
-    return share
+    found: NDArray[np.float64] = np.where(either, np.maximum(np.maximum(pulled, pressed), 0.0), np.nan)
+    return found

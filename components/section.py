@@ -26,11 +26,12 @@ _MPA, _GPA = 1e3, 1e6  # kN/m²
 
 @dataclass(frozen=True)
 class Section:
-    """A cross-section, with area (m²) and second moment of area (m⁴)."""
+    """A cross-section, with area (m²), second moment of area (m⁴) and depth (m)."""
 
     name: str
     area: float
     second_moment: float
+    depth: float
 
     @classmethod
     def named(cls, name: str) -> Section | None:
@@ -39,7 +40,7 @@ class Section:
         if found := _RECTANGLE.fullmatch(wanted):
             b, h = map(float, found.groups())
             sound = 0.0 < b < LARGEST and 0.0 < h < LARGEST
-            return _section(f"rectangle {b:.12g}×{h:.12g}", rectangle(b, h)) if sound else None
+            return _section(f"rectangle {b:.12g}×{h:.12g}", rectangle(b, h), h) if sound else None
         if (square := _SQUARE.fullmatch(wanted)) and square[1] == f"shs {square[2]}":
             wanted = f"{square[1]}×{square[3]}"
         return next((each for known, each in SECTIONS.items() if _folded(known) == wanted), None)
@@ -106,14 +107,14 @@ _SHAPES: dict[str, Callable[..., tuple[float, float]]] = {"I": rolled, "tube": t
 # --- by name ---------------------------------------------------------------------------------------------
 
 
-def _section(name: str, in_mm: tuple[float, float]) -> Section:
+def _section(name: str, in_mm: tuple[float, float], depth: float) -> Section:
     area, second = in_mm
-    return Section(name, float(f"{area * 1e-6:.6g}"), float(f"{second * 1e-12:.6g}"))
+    return Section(name, float(f"{area * 1e-6:.6g}"), float(f"{second * 1e-12:.6g}"), 1e-3 * depth)
 
 
 _HELD = json.loads((Path(__file__).parents[1] / "assets" / "sections.json").read_text(encoding="utf-8"))
 SECTIONS = {
-    (name := f"{family} {size}"): _section(name, _SHAPES[of["shape"]](*dimensions))
+    (name := f"{family} {size}"): _section(name, _SHAPES[of["shape"]](*dimensions), dimensions[0])
     for family, of in _HELD["families"].items()
     for size, dimensions in of["sizes"].items()
 }

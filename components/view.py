@@ -228,6 +228,7 @@ class View:
     pointed: what is said of the element under the pointer, beside it.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption. swing: the share of it, from
     1 to −1, that is drawn now.
+    names: all elements have their names, not only few.
     utilisation: rods show in colours how much of their strength they bear.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     free_bodies: rods and joints are drawn apart, with the forces on each.
@@ -269,6 +270,7 @@ class View:
     since: dict[str, int] = field(default_factory=dict)
     largest_force: float = 0.0
     utilisation: bool = False
+    names: bool = False
     wanted: frozenset[str] = frozenset()
     free_bodies: bool = False
     shape: Shape | None = None

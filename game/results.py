@@ -12,7 +12,7 @@ from pinjoint.components.derived import chord_rotation, rigid_slopes
 from pinjoint.components.field import CM, ENDS
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends, has_strength, nodes, rigid_joints, utilisation
+from pinjoint.components.rod import bends, bends_unchecked, has_strength, nodes, rigid_joints, utilisation
 from pinjoint.components.written import ROUNDING
 from pinjoint.tables import Array, Column, Table
 
@@ -67,7 +67,8 @@ def _of_rods(model: Model, length: Array, force: float, moment: float) -> Table:
     else:
         columns.append(_column("axial_force", "N", _KN, rods.axial_force, force))
     if has_strength(model):
-        columns.append(_column("utilisation", tr("utilisation"), _PERCENT, utilisation(model)))
+        title = tr("axial utilisation") if bends_unchecked(model).any() else tr("utilisation")
+        columns.append(_column("utilisation", title, _PERCENT, utilisation(model)))
     return Table(tr("rod"), rods.names, columns)
 
 

@@ -73,6 +73,7 @@ COMMANDS |= {
     "force-method": Command(
         _of("force_method"), marked("solve a statically indeterminate structure by the force method")
     ),
+    "sheet": Command(_of("sheet"), marked("write a PDF with drawing, diagrams and tables of a structure")),
     "sweep": Command(_of("sweep"), marked("compute many variants of a model")),
     "plan": Command(_of("plan"), marked("list the systems that run in a scene, and why others do not")),
     "render": Command(_of("render"), marked("draw a model, or its run, to a file")),

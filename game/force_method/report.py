@@ -11,46 +11,33 @@ import numpy as np
 from reportlab.platypus import Flowable, KeepTogether
 
 from pinjoint.components import written
-from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, is_frame
-from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.bent import AXIAL, MOMENT
 from pinjoint.components.language import listed, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import nodes, rigid_joints
-from pinjoint.components.tags import DiagramShown
-from pinjoint.components.view import THESIS, Cut, View
+from pinjoint.components.view import THESIS, Cut
+from pinjoint.figures import diagram_titles, figure, in_a_row, printed, signs
 from pinjoint.force_method import index, words
 from pinjoint.force_method.copies import base_structure, loaded, still, unloaded
-from pinjoint.force_method.guide import scale_to
 from pinjoint.force_method.tables import PRODUCTS, Tables
 from pinjoint.force_method.words import EXACT
 from pinjoint.systems.render.backends.paper import (
     GUTTER,
     LAYOUTS,
-    PIXEL,
     WIDTH,
     Block,
-    Figure,
     Layout,
     as_paper,
     in_rows,
     matrices,
 )
-from pinjoint.systems.render.model.arrows import largest_force
-from pinjoint.systems.render.picture import compose
-from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.statics.counting import Count
 from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.force_method import SetState
 from pinjoint.systems.statics.unknowns import Unknown
-from pinjoint.tables import Table
 
-_BESIDE_IT, _ABOVE, _BELOW = 56.0, 46.0, 62.0  # pixels around a structure, for supports, loads and diagrams
-_MOMENTS = 12.0  # pixels more beside it, for the values of moments
-_SHORTER = 1.3  # times the largest force: that of the longest arrow
-_DIAGRAM = 30.0  # pixels of the largest axial force
 _NOTHING = 1e-9  # kN: of axial forces, which beams have none of
-_ROWS = 120  # of a table that are printed
 _TERMS = 6  # of a sum that are written one by one
 _SHOWN = 2  # unknowns of a frame up to which each has a column of superposition
 _BESIDE = 26  # rows of a table that stands beside others
@@ -83,64 +70,10 @@ def contents(solved: Tables, convention: str, layout: Layout = LAYOUTS[0]) -> li
 def _conventions(solved: Tables) -> Iterator[str]:
     """The theory, and what is positive."""
     yield tr("Force method, by first-order theory: linear elastic, equilibrium about the original shape.")
-    if solved.bends:
-        yield tr(
-            "Signs: axial forces are positive in tension, reactions to the right, upwards and counter-clockwise."
-            " Bending moments M are drawn on the side in tension, and are positive where that is the right side of a rod,"
-            " seen from its start to its end."
-        )
-    else:
-        yield tr("Signs: axial forces are positive in tension, reactions to the right and upwards.")
+    yield signs(solved.model)
 
 
 # --- figures -----------------------------------------------------------------------------------------
-
-
-def _shape(model: Model) -> tuple[float, float]:
-    """Width and height of a structure (m)."""
-    position = model.particles.position
-    width, height = np.ptp(position, axis=0).tolist() if len(position) else (1.0, 1.0)
-    return max(width, 1e-9), max(height, 1e-9)
-
-
-def _in_a_row(layout: Layout, model: Model) -> int:
-    """How many figures stand in a row."""
-    wide, high = _shape(model)
-    return 2 if wide > layout.flat * high else 3
-
-
-def _figure(
-    layout: Layout,
-    model: Model,
-    caption: str,
-    *,
-    diagrams: str | None = None,
-    cuts: Sequence[Cut] = (),
-    has_units: bool = True,
-) -> Block:
-    """A picture of a model, with the diagrams of a quantity."""
-    model.delete(list(model.grids))
-    wide, high = _shape(model)
-    row = _in_a_row(layout, model)
-    width = int((WIDTH - (row - 1) * GUTTER) / row / PIXEL)
-    beside = _BESIDE_IT + _MOMENTS * is_frame(model)
-    room = width - 2.0 * beside
-    height = int(min(room * high / wide + _ABOVE + _BELOW, layout.figure / PIXEL))
-    view = View(legend=False, has_scale=False, all_diagrams=diagrams is not None, quantity=diagrams or AXIAL)
-    view.cuts, view.has_units = tuple(cuts), has_units
-    view.camera = Camera(viewport=Viewport(0, 0, width, height))
-    inner = Viewport(int(beside), int(_ABOVE), int(room), int(height - _ABOVE - _BELOW))
-    view.camera.fit(model.particles.position, 0.0, inner, 1.0)
-    view.largest_force = _SHORTER * largest_force(model, view)
-    pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
-    model.settings.diagram_scale = scale_to(_DIAGRAM, pulled)
-    loaded_ones = [p for p in model.particles if any(p.force) or p.moment] + [
-        one.particle for one in model.loads
-    ]
-    model.tag_only(loaded_ones, DiagramShown)
-    theme = replace(load_theme("light"), background=(255, 255, 255, 255))
-    made = Figure(compose(model, view, theme), layout.text(caption, "caption"))
-    return made.width, [made]
 
 
 def _cuts(
@@ -158,21 +91,6 @@ def _cuts(
             joint = model.particles[(start, end)[unknown.axis]]
             held = joint.fixed_rotation and not rigid[joint.row]
         yield Cut((start, end), unknown.axis, label, held)
-
-
-def _printed(layout: Layout, table: Table, *, without_last: bool = False) -> list[Block]:
-    """A table on paper, with a note where it is longer than is printed; perhaps without its last column."""
-    columns = table.columns[:-1] if without_last else table.columns
-    head = [table.corner, *(f"{column.title}\n{column.unit}" for column in columns)]
-    rows = table[1 : 1 + min(len(table.names), _ROWS)]
-    if table.summed:
-        rows.append(table[len(table) - 1])
-    made = layout.tables(head, [row[: len(head)] for row in rows], summed=table.summed)
-    left_out = len(table.names) - _ROWS
-    if left_out > 0:
-        note = tr("{count} more rows are not printed; sums are of all.", count=left_out)
-        made[-1][1].append(layout.text(note, "caption"))
-    return made
 
 
 def _flowing(heading: Sequence[Flowable], blocks: Sequence[Block], rows: int) -> list[Flowable]:
@@ -208,11 +126,11 @@ class _Page:
         nothing = SetState.superposed([solution.real], [0.0])
         real = still(base_structure(model, []), model, nothing)
         released = base_structure(model, unknowns)
-        blocks = [_figure(layout, real, tr("The structure, its supports and its loads"))]
+        blocks = [figure(layout, real, tr("The structure, its supports and its loads"))]
         caption = tr("Released structure under the load: {force} ({unit})", force=f"{symbol}₀", unit=unit)
         hinged = list(_cuts(model, released, unknowns))
         under_load = still(released, model, solution.base)
-        blocks.append(_figure(layout, under_load, caption, diagrams=quantity, cuts=hinged))
+        blocks.append(figure(layout, under_load, caption, diagrams=quantity, cuts=hinged))
         for i in self._every:
             blocks.append(self._under_unit(i, quantity, f"{symbol.lower()}{index(i + 1)}"))
         return _flowing(
@@ -227,7 +145,7 @@ class _Page:
         cuts = list(_cuts(model, copy, unknowns, i))
         if unknown.of_end and any(cut.label and cut.held for cut in cuts):  # the support bears no moment
             state = replace(state, reaction=state.reaction * [1.0, 1.0, 0.0])
-        return _figure(
+        return figure(
             self.layout,
             still(copy, model, state),
             tr("Released structure under {unknown} = 1: {force}", unknown=f"X{index(i + 1)}", force=force),
@@ -255,7 +173,7 @@ class _Page:
                 for i, unknown in enumerate(unknowns)
             ),
         ]
-        full = (2 + len(unknowns)) % _in_a_row(self.layout, self.model) == 0  # else beside the last figures
+        full = (2 + len(unknowns)) % in_a_row(self.layout, self.model) == 0  # else beside the last figures
         return [(0.0, degree), (0.0, found)] if full else [(0.0, [*degree, *found])]
 
     def working(self) -> list[Flowable]:
@@ -272,19 +190,19 @@ class _Page:
                 count=PRODUCTS,
             )
             heading.append(self._text(note, "caption"))
-            blocks += _printed(self.layout, solved.forces(every))
+            blocks += printed(self.layout, solved.forces(every))
         elif solved.bends:
             ends = tr("M and M′ are the moments at both ends of a rod; qL²/8 is how far M bulges between them.")
             heading.append(self._text(ends, "caption"))
-            blocks += _printed(self.layout, solved.bending(every))
+            blocks += printed(self.layout, solved.bending(every))
             warm = solved.solution.work.axial.of_free.any()
             axial = solved.virtual_work(every) if warm else solved.forces(every)
-            blocks += _printed(self.layout, axial) if self._pulls else []
+            blocks += printed(self.layout, axial) if self._pulls else []
         else:
-            blocks += _printed(self.layout, solved.virtual_work(every))
+            blocks += printed(self.layout, solved.virtual_work(every))
         settlements = solved.settlements()
         if settlements is not None:
-            blocks += _printed(self.layout, settlements)
+            blocks += printed(self.layout, settlements)
         if solved.bends and len(every) <= PRODUCTS and (self._pulls or settlements is not None):
             space = " " if len(every) == 1 else "\u00a0"  # the lines of several are parted between sums
             sums = _APART.join(line.replace(" ", space) for line in solved.all_sums())
@@ -337,19 +255,14 @@ class _Page:
     def forces(self) -> list[Flowable]:
         """Superposition, and the forces in the real structure."""
         model, solved = self.model, self.solved
-        titles = {
-            MOMENT: tr("Bending moments M (kN·m), on the side in tension"),
-            SHEAR: tr("Shear forces V (kN)"),
-            AXIAL: tr("Axial forces N (kN)"),
-        }
         figures = [
-            _figure(
+            figure(
                 self.layout,
                 still(base_structure(model, []), model, self.solution.superposed),
                 title,
                 diagrams=quantity,
             )
-            for quantity, title in titles.items()
+            for quantity, title in diagram_titles().items()
             if (self._pulls if quantity == AXIAL else solved.bends)
         ]
         heading = [self._text(tr("4  Forces in the structure"), "heading")]
@@ -357,7 +270,7 @@ class _Page:
         kinds = [solved.moments(most)] if solved.bends else []
         kinds += [solved.axial_forces(most)] if self._pulls else []
         kinds.append(solved.reactions(most))
-        tables = [block for table in kinds for block in _printed(self.layout, table, without_last=True)]
+        tables = [block for table in kinds for block in printed(self.layout, table, without_last=True)]
         beside = tables[1:] if solved.bends else [*tables[1:], *figures]
         if self._rows <= _BESIDE and sum(width for width, _ in (tables[0], *beside)) > WIDTH - 2 * GUTTER:
             below = (max(width for width, _ in beside), [part for _, parts in beside for part in parts])

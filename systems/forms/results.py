@@ -17,7 +17,7 @@ from pinjoint.components.language import marked, tr, tr_in
 from pinjoint.components.load import CONSTANT, Load, factor_at
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, rigid_joints, utilisation
+from pinjoint.components.rod import Rod, bends_unchecked, rigid_joints, utilisation
 
 SECTION = marked("Results")
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small
@@ -41,11 +41,11 @@ class _Columns:
     """The columns of a model; those that need its forces are not computed before these are known, but NaN."""
 
     def __init__(self, model: Model, known: bool) -> None:
-        self.model, self._known = model, known
+        self.model, self.known = model, known
 
     def __call__(self, name: str) -> Any:
         """A computed column, such as "rods.axial_force"."""
-        if self._known:
+        if self.known:
             return self.model.column(name)
         table, field = name.split(".")
         rows = self.model.tables[table]
@@ -140,17 +140,20 @@ def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]
     rods = columns.model.rods
     if not np.isfinite(np.minimum(rods.tension_limit, rods.compression_limit)[rows]).any():
         return
-    used, text = utilisation(columns.model, columns("rods.axial_force"))[rows], "—"
+    used, text = utilisation(columns.model)[rows] if columns.known else np.full(len(rows), np.nan), "—"
     if not np.isnan(used).all():
         most = int(np.nanargmax(used))
         whose = f" ({rods.column('name')[rows[most]]})" if len(rows) > 1 else ""
         text = f"{written.share(used[most])}{whose}"
     several = len(rows) > 1
-    if rods.bending_stiffness[rows].any():
+    told = marked("The largest stress, |N|/A + |M|/W, divided by the yield stress.")
+    title = tr("largest utilisation") if several else tr("utilisation")
+    if bends_unchecked(columns.model)[rows].any():
+        told = marked(
+            "Axial force divided by the strength; for bending, choose a section, whose depth is known."
+        )
         title = tr("largest axial utilisation") if several else tr("axial utilisation")
-    else:
-        title = tr("largest utilisation") if several else tr("utilisation")
-    yield Reading(SECTION, title, text, marked("Axial force divided by the strength in its direction."))
+    yield Reading(SECTION, title, text, told)
 
 
 # --- particles ----------------------------------------------------------------------------------------

@@ -27,14 +27,16 @@ from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.theory import FIRST_ORDER
-from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised
+from pinjoint.systems.statics.equations import Array, Rows, Structure, largest, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.theory import FirstOrder
 from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown
 
-_ROUNDING = 1e-12  # of the geometric mean of their diagonal: smaller flexibilities are 0
+_ROUNDING = (
+    1e-12  # of the largest force, or of the geometric mean of their diagonal: smaller flexibilities are 0
+)
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,23 @@ class SetState:
         """At the ends of the rods, positive where the side on their right is in tension, (rods, 2)."""
         moment: Array = self.end_moment * np.array([-1.0, 1.0])
         return moment
+
+    def without_rounding(self, length: Array) -> SetState:
+        """The same, in which what is nothing beside the largest force is 0; length: of the rods, as levers (rods,)."""
+        lever = length.max(initial=0.0)
+        moments = self.end_moment / length[:, None]
+        forces = (self.axial_force, self.reaction[:, :2], moments, self.reaction[:, 2:] / max(lever, 1e-300))
+        least = _ROUNDING * max(map(largest, forces))
+
+        def kept(values: Array, least: Array | float) -> Array:
+            return np.where(np.abs(values) > least, values, 0.0)
+
+        return replace(
+            self,
+            axial_force=kept(self.axial_force, least),
+            end_moment=kept(self.end_moment, least * length[:, None]),
+            reaction=kept(self.reaction, least * np.array([1.0, 1.0, lever])),
+        )
 
     @classmethod
     def superposed(cls, states: Sequence[SetState], amounts: Sequence[float]) -> SetState:
@@ -105,10 +124,11 @@ class Work:
 
     @property
     def gap(self) -> Array:
-        """δ₀ (m,)."""
+        """δ₀ (m,), 0 where its terms cancel but for rounding."""
         parts = [part for terms in (self.axial, self.bending) for part in (terms.of_load, terms.of_free)]
         total: Array = np.sum([part.sum(axis=1) for part in (*parts, self.of_supports)], axis=0)
-        return total
+        size = np.sum([np.abs(part).sum(axis=1) for part in (*parts, self.of_supports)], axis=0)
+        return np.where(np.abs(total) > _ROUNDING * size, total, 0.0)
 
 
 @dataclass(frozen=True)
@@ -252,7 +272,8 @@ class _Released:
         reaction = np.zeros((len(moved), 3))
         reaction[:, : structure.width] = np.where(structure.fixed, rods.internal(response) - load, 0.0)
         end_moment = structure.end_moments(response) + moment
-        return SetState(moved[:, :2], structure.rotation(moved), response.axial_force, end_moment, reaction)
+        state = SetState(moved[:, :2], structure.rotation(moved), response.axial_force, end_moment, reaction)
+        return state.without_rounding(model.rods.rest_length)
 
 
 def bulge(model: Model) -> Array:

@@ -6,7 +6,7 @@ moves on to the next stable equilibrium, if there is one.
 
 First-order theory is about the original positions, and linear while no rod yields, slackens or tightens: then one
 solution of K u = f with K factored once is the answer, so that diagrams of a frame follow the hand that edits it
-(99 rods: 4.5 ms; 10 ms as a path). From event to event the same path is followed as in exact geometry.
+(99 rods: 4 ms; 10 ms as a path). From event to event the same path is followed as in exact geometry.
 """
 
 from __future__ import annotations
@@ -254,6 +254,8 @@ class _Settling:
 
     def _held_factor(self) -> float:
         """The load factor of the forces that hold the present state; 0 if they are no scaled load."""
+        if not self.load.any():
+            return 0.0
         scaled = np.where(self.structure.unknown, self.external.scaled, 0.0) + self._carried()
         size = float((scaled * scaled).sum())
         factor = float((self.load * scaled).sum()) / size if size > 0.0 else 0.0

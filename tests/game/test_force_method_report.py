@@ -10,6 +10,7 @@ from pinjoint.commands.command_line import main
 from pinjoint.components.language import spoken
 from pinjoint.components.view import TEXTBOOK, THESIS
 from pinjoint.documents import models
+from pinjoint.force_method import words
 from pinjoint.force_method.report import contents, report
 from pinjoint.force_method.tables import Tables
 from pinjoint.systems.render.backends.paper import LAYOUTS, WIDTH, Layout
@@ -19,6 +20,7 @@ from pinjoint.systems.statics.unknowns import Unknown, redundants
 from pinjoint.tables import Column
 from tests.benchmarks.models import lattice
 from tests.game.force_method_models import panels, propped, two_span
+from tests.systems.render.frame_models import CLAMPED, frame
 
 OWN = {"panels": panels, "propped": propped, "two_span": two_span}
 
@@ -215,3 +217,15 @@ def test_columns_have_decimals_with_which_they_add_up() -> None:
     parts = [float(column.text(row)) for row in range(3)]
     assert sum(parts) == pytest.approx(float(column.text(3)), abs=1e-12)
     assert Column("x", "cm", np.array([1.5e-7])).head == "x (10⁻⁹ cm)"
+
+
+@pytest.mark.parametrize("released", [["BC.start", "D.x", "D.y"], ["D.x", "D.y", "D.rotation"]])
+def test_what_is_rounding_is_told_as_nothing(released: list[str]) -> None:
+    """Both columns of a portal are pushed alike, so that many of its terms are 0."""
+    particles = {"A": (0.0, 0.0, CLAMPED), "B": (0.0, 4.0, {}), "C": (6.0, 4.0, {}), "D": (6.0, 0.0, CLAMPED)}
+    loads = [{"name": f"at {one}", "on": one, "force": [10.0, 0.0]} for one in "BC"]
+    model = models.load(frame(particles, {"A B": {}, "B C": {}, "C D": {}}, loads=loads))
+    found = Tables(model, solve(model, [Unknown.named(model, name) for name in released]))
+    said = [str(part) for part in written_in(contents(found, TEXTBOOK))]
+    said += [*words.equations(found), *words.in_thesis(found.solution)]
+    assert not [line for line in said if re.search("10⁻[¹²³][⁰-⁹]", line)]

@@ -264,3 +264,11 @@ def test_weight_along_one_rod_where_nothing_else_weighs() -> None:
     session.select(session.rods["AB"])
     session.act("weight along")
     assert session.notice.startswith("These rods have no density")
+
+
+def test_in_an_empty_model_ctrl_r_always_leads_to_rods_that_bend() -> None:
+    session = opened()
+    for _ in range(2):
+        session.press("ctrl+r")
+        assert session.view.rigid
+        session.press("escape")

@@ -55,11 +55,14 @@ def _are_rigid(context: Context) -> bool:
     "rigid", "ctrl+r", "draw frame rods, or make selected rods rigid", while_drawing=True, pressed=_are_rigid
 )
 def _rigid(context: Context, pixel: Vector) -> None:
-    """Make the selected rods rigid at both ends, or pinned if they are so; without any, draw such rods."""
+    """Make the selected rods rigid at both ends, or pinned if they are so; without any, draw such rods.
+
+    In an empty model it always leads to rods that bend, as its card promises, also where these were the last drawn.
+    """
     drawing = DrawRod.tool in (tool_in_hand(context), context.view.tool)
     rods = [] if drawing else context.selected_of(Rod)
     if not rods:
-        context.view.rigid = not context.view.rigid
+        context.view.rigid = not (context.view.rigid and (drawing or context.model.rods.count))
         if isinstance(context.gesture, DrawRod):
             context.gesture.say(context)
         elif context.view.rigid and not drawing:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pinjoint.components.field import Vector
+from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.documents.models import ModelError
 from pinjoint.documents.open_documents import ModelFile
@@ -41,3 +42,23 @@ def _save_again(context: Context, pixel: Vector) -> None:
 action("load", "d", "open a model", (PAUSE,))(lambda context, pixel: context.scenes.request_from_pause("load"))
 action("load", "ctrl+o", "open a model")(ACTIONS["load"].perform)
 action("new", "ctrl+n", "start a new model")(lambda context, pixel: context.documents.open(Model()))
+
+
+@action("sheet", "", "save a sheet: drawing, diagrams and tables as a PDF")
+def _sheet(context: Context, pixel: Vector) -> None:
+    """Write the static solution of the model, from its undeformed beginning, to a PDF in the working folder."""
+    if context.window is None:
+        return
+    from pinjoint.sheet import NoSheet, sheet  # it imports reportlab
+
+    try:
+        path = context.window.save("pinjoint-sheet.pdf", sheet(context.model))
+    except NoSheet as error:
+        raise Refusal(str(error)) from None
+    except OSError as error:
+        raise Refusal(
+            "No sheet was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
+            file=error.filename,
+            reason=error.strerror,
+        ) from None
+    context.notice = tr("Sheet saved: {file}", file=path)

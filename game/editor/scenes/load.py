@@ -85,7 +85,7 @@ class Load(FileScene):
             )
 
     def accept(self, context: Context) -> None:
-        """Return: open the chosen tile, else the model whose name was typed, else the only visible tile."""
+        """Return: open the chosen tile, else the model whose name was typed, else the first visible tile."""
         name, chosen = self.box.text.strip(), self.form.chosen
         left = [tile for tile in self.form.tiles if not tile.hidden]
         if chosen is not None:
@@ -94,7 +94,7 @@ class Load(FileScene):
             self.form.message = tr("Type a name, or choose a picture with the arrow keys.")
         elif (source := library.find(name)) is not None:
             self._open(context, source)
-        elif len(left) == 1:
+        elif left:
             self.choose(context, left[0])
         else:
             nearest = library.nearest(name)

@@ -254,12 +254,17 @@ def _padded(right: float, below: float) -> list[tuple[Any, ...]]:
     return [(f"{side}PADDING", (0, 0), (-1, -1), points) for side, points in sides.items()]
 
 
-def as_paper(title: str, made_of: Callable[[Layout], Sequence[Flowable]], foot: str) -> bytes:
+def as_paper(
+    title: str,
+    made_of: Callable[[Layout], Sequence[Flowable]],
+    foot: str,
+    layouts: Sequence[Layout] = LAYOUTS,
+) -> bytes:
     """The contents of a PDF file: what is made in a layout, in the largest with which it takes the fewest pages of A4.
 
     foot: below every page.
     """
-    _, made = min((_built(title, made_of(layout), foot) for layout in LAYOUTS), key=itemgetter(0))
+    _, made = min((_built(title, made_of(layout), foot) for layout in layouts), key=itemgetter(0))
     return made
 
 

@@ -251,13 +251,14 @@ def _lines_of_shape(
 
 def label_names(sheet: Sheet) -> None:
     """Names of selected elements, of all where there are few, and of the one that a click would hit."""
-    all_of_them = sheet.model.particles.count + sheet.model.rods.count <= FEW
+    most = MANY if sheet.view.names else FEW
+    all_of_them = sheet.model.particles.count + sheet.model.rods.count <= most
     backing = faded(sheet.theme.background, BACKING)
     for table, rows in (("particles", sheet.particles), ("rods", sheet.rods)):
         selected = sheet.tagged(Selected, table)
         marked = np.append(selected if len(selected) <= FEW else [], sheet.tagged(Hovered, table)).astype(int)
         wanted = np.arange(len(rows)) if all_of_them else np.flatnonzero(sheet.chosen(marked, rows))
-        for index in wanted[:FEW].tolist():
+        for index in wanted[:most].tolist():
             row = int(rows[index])
             name, is_marked = sheet.model.tables[table].handles[row].name, row in marked
             size, weight = (sheet.font(12.0), "semibold") if is_marked else (sheet.font(11.0), "regular")

@@ -13,7 +13,8 @@ from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 
 RIGHT, DOWN, LEFT, UP = range(4)
 NO_SUPPORT = -1
-_RELUCTANCE = np.array([0.5, 0.0, 0.45, 0.8])  # by side, to have a support there
+_RELUCTANCE = np.array([0.45, 0.0, 0.45, 0.8])  # by side, to have a support there
+_ALIKE = 1e-6  # differences of crowding that are rounding
 
 
 def crowding(sheet: Sheet, rows: Rows) -> Values:
@@ -40,7 +41,9 @@ def support_sides(sheet: Sheet) -> NDArray[np.int64]:
     """The side of each particle on which its support stands, shape (n,); NO_SUPPORT where it has none."""
     fixed = sheet.model.particles.fixed
     crowd = crowding(sheet, np.flatnonzero(fixed[:, 0] | fixed[:, 1]))
-    sides = freest_sides(fixed, crowd)
+    x = sheet.model.particles.position[:, 0]
+    middle = 0.5 * (x.min() + x.max()) if len(x) else 0.0
+    sides = freest_sides(fixed, crowd, x > middle)
     clamped = np.flatnonzero(fixed.all(axis=1) & clamps(sheet.model))
     opposite = np.roll(crowd[clamped], 2, axis=1)
     sides[clamped] = np.argmin(crowd[clamped] - opposite + _RELUCTANCE / 10.0, axis=1)
@@ -53,19 +56,23 @@ def clamps(model: Model) -> Truths:
     return held & rigid_joints(model) if held.any() else held
 
 
-def freest_sides(fixed: Truths, crowd: Values) -> NDArray[np.int64]:
+def freest_sides(fixed: Truths, crowd: Values, right: Truths) -> NDArray[np.int64]:
     """The side for the supports of particles fixed in x, y (n, 2) that are crowded so (n, 4).
 
-    Below or to the left, or the opposite side where that is clearly freer; for both directions below
-    rather than at a side, and above only where all else is crowded.
+    Below or outwards, or the opposite side where that is clearly freer; for both directions below rather than at a side,
+    and above only where all else is crowded, or left and right are alike. right: which stand in the right half of the
+    structure. So what is symmetrical stays so.
     """
     sides = np.full(len(fixed), NO_SUPPORT)
     x, y = fixed[:, 0], fixed[:, 1]
     vertical = np.where(crowd[:, UP] < crowd[:, DOWN] - 0.3, UP, DOWN)
-    horizontal = np.where(crowd[:, RIGHT] < crowd[:, LEFT] - 0.3, RIGHT, LEFT)
+    freer = crowd[:, LEFT] - crowd[:, RIGHT]
+    horizontal = np.where(np.where(right, freer > -0.3, freer > 0.3), RIGHT, LEFT)
     sides[y & ~x] = vertical[y & ~x]
     sides[x & ~y] = horizontal[x & ~y]
-    sides[x & y] = np.argmin(crowd[x & y] + _RELUCTANCE, axis=1)
+    cost = crowd + _RELUCTANCE
+    cost[np.abs(freer) <= _ALIKE, RIGHT::2] = np.inf
+    sides[x & y] = np.argmin(cost[x & y], axis=1)
     return sides
 
 

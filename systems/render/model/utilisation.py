@@ -9,7 +9,7 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
-from pinjoint.components.rod import has_strength, utilisation
+from pinjoint.components.rod import bends_unchecked, has_strength, utilisation
 from pinjoint.systems.render.labels.placing import ANCHORS
 from pinjoint.systems.render.marks import Mark, Panel, Strokes, Values
 from pinjoint.systems.render.model.sheet import FEW, Sheet
@@ -48,7 +48,8 @@ def shade_rods(sheet: Sheet) -> None:
     for step in np.unique(level[limited]).tolist():
         colour = shade(sheet.theme, step / (LEVELS - 1))
         sheet.shades.append((np.flatnonzero(limited & (level == step)), colour))
-    sheet.explain("utilisation", sheet.start, sheet.end)
+    whole = not bends_unchecked(sheet.model)[limited].any()
+    sheet.explain("utilisation" if whole else "axial utilisation", sheet.start, sheet.end)
     _mark_first(sheet, share)
     _label(sheet, share)
 
@@ -86,7 +87,7 @@ def _said(model: Model, row: int, share: float) -> str:
     used = {"rod": rod.name, "share": written.share(share)}
     if rod.yielded_at is not None:
         return tr("{rod} {share}: yielded first, at {time}", **used, time=written.time(rod.yielded_at))
-    if rod.bending_stiffness > 0.0:  # bending takes its part of the strength too
+    if bends_unchecked(model)[row]:
         return tr("{rod} {share}: closest to yielding by axial force", **used)
     return tr("{rod} {share}: closest to yielding", **used)
 

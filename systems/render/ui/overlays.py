@@ -237,6 +237,7 @@ MEANINGS = {
     "shear": marked("shear force V (kN)"),
     "yielding": marked("yielding"),
     "utilisation": marked("utilisation 0 to 100 %"),
+    "axial utilisation": marked("utilisation 0 to 100 %, of N alone where the depth is unknown"),
     "first": marked("first to yield"),
     "slack": marked("slack cable"),
     "load": marked("load"),
@@ -246,6 +247,7 @@ MEANINGS = {
     "hinge": marked("hinge"),
     "ghost": marked("undeformed"),
 }
+_SCALES = ("utilisation", "axial utilisation")
 UNITS = {
     "load": "kN",
     "load per length": "kN/m",
@@ -295,7 +297,7 @@ def _arranged(
     entries = [
         Row(
             (
-                Drawn(partial(_swatch, name, theme), _BAR_WIDTH if name == "utilisation" else 16.0),
+                Drawn(partial(_swatch, name, theme), _BAR_WIDTH if name in _SCALES else 16.0),
                 Text(said, 11.0, theme.text),
             ),
             6.0,
@@ -324,7 +326,7 @@ def _rows(entries: Sequence[Row], room: float, u: float) -> list[list[Row]]:
 def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
     """A small sample of what a colour means: a diagram, a yielding rod, a slack cable, an arrow."""
     x, y, width = place.left, place.middle[1], place.width
-    if name == "utilisation":
+    if name in _SCALES:
         return scale_bar(theme, x, y, width, u)
     in_ink = ("slack", "hinge", "moment", "shear", "velocity", "inertia")
     colour = getattr(theme, "yielding" if name == "first" else "ink" if name in in_ink else name)

@@ -194,6 +194,7 @@ PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
     ("screenshot", ""): _window,
     ("picture as svg", ""): _window,
     ("picture as pdf", ""): _window,
+    ("sheet", ""): _window,
     ("larger", ""): _window,
     ("smaller", ""): _window,
     ("usual size", ""): _window,

@@ -99,7 +99,18 @@ def test_derived_columns_are_read_only_when_needed() -> None:
     ],
 )
 def test_supports_stand_where_no_rod_is(fixed: tuple, crowd: tuple, side: int) -> None:
-    assert freest_sides(np.array([fixed]), np.array([crowd], dtype=float)).tolist() == [side]
+    at_left = np.array([False])
+    assert freest_sides(np.array([fixed]), np.array([crowd], dtype=float), at_left).tolist() == [side]
+
+
+def test_what_is_symmetrical_has_symmetrical_supports() -> None:
+    """Three bars that hang from a ceiling; two columns held along x."""
+    hanging = [[0.5, 0.5, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.5, 0.5, 0.0]]
+    held = np.ones((3, 2), dtype=bool)
+    right = np.array([False, False, True])
+    assert freest_sides(held, np.array(hanging), right).tolist() == [LEFT, UP, RIGHT]
+    upright, along_x = np.array([[0.0, 1.0, 0.0, 1.0]] * 2), np.array([[True, False]] * 2)
+    assert freest_sides(along_x, upright, np.array([False, True])).tolist() == [LEFT, RIGHT]
 
 
 def test_positions_that_are_no_numbers_are_left_out() -> None:

@@ -10,6 +10,7 @@ from pinjoint.session import Session
 from pinjoint.systems.render.marks import Panel, Strokes
 from pinjoint.systems.render.model.utilisation import LEVELS, first_at_limit, shade
 from pinjoint.systems.render.theme import load_theme, theme_names
+from tests.reference import models as reference
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle
 from tests.systems.render.test_themes import VISIONS, lab
 
@@ -30,6 +31,32 @@ def test_it_is_the_force_over_the_strength_in_its_direction() -> None:
     found = utilisation(model)
     np.testing.assert_allclose(found[:2], [28.34277 / 50.0, 0.0])
     assert np.isnan(found[2])
+
+
+def test_of_a_member_that_bends_it_is_the_sum_of_both_stresses() -> None:
+    """A column of IPE 200 (A = 28.5 cm², I = 1943 cm⁴, h = 20 cm) under a force above and one from the side."""
+    source = reference.model(
+        [
+            {"name": "A", "position": [0.0, 0.0], "fixed": [True, True], "fixed_rotation": True},
+            {"name": "B", "position": [0.0, 3.0], "force": [10.0, -100.0]},
+        ],
+        [{"name": "AB", "between": ["A", "B"], "section": "IPE 200"}],
+    )
+    session = Session.open(source)
+    session.settle()
+    moment, force = abs(session.rods["AB"].bending_moment[0]), 100.0
+    assert moment == pytest.approx(30.0, rel=0.1)  # and what the sway adds
+    stress = force / 28.5e-4 + moment / (1943e-8 / 0.1)
+    assert utilisation(session.model)[0] == pytest.approx(stress / 235e3, rel=2e-3)
+    session.press("a")
+    texts = picture_of(session.model, utilisation=True).texts
+    assert "utilisation 0 to 100 %" in texts
+    session.rods["AB"].second_moment = 2e-5
+    session.settle()
+    assert utilisation(session.model)[0] == pytest.approx(force / (28.5e-4 * 235e3), rel=2e-3)
+    texts = picture_of(session.model, utilisation=True).texts
+    assert "utilisation 0 to 100 %, of N alone where the depth is unknown" in texts
+    assert any(text.endswith("closest to yielding by axial force") for text in texts)
 
 
 def test_rods_take_its_colours_only_where_they_are_asked_for() -> None:

@@ -1,0 +1,37 @@
+"""`pinjoint sheet`: a structure and its static solution on paper."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pinjoint.commands.arguments import Parser
+from pinjoint.commands.options import ANSWERED, add_model, model_of
+from pinjoint.commands.output import writable, writing
+from pinjoint.components.language import tr
+from pinjoint.components.theory import FIRST_ORDER, THEORIES
+from pinjoint.documents.models import replace
+
+
+def command(words: Sequence[str]) -> int:
+    """Do what the words after the command ask for; returns the exit status."""
+    parser = Parser(
+        prog="pinjoint sheet",
+        description=tr(
+            "Write a PDF with a drawing of a structure, its diagrams, its deflected shape, and tables."
+        ),
+    )
+    add_model(parser)
+    parser.add_argument("--output", type=writable, required=True, metavar="FILE", help=tr("the PDF to write"))
+    parser.add_argument(
+        "--theory",
+        choices=THEORIES,
+        default=FIRST_ORDER,
+        help=tr("small displacements (the default), or exact geometry"),
+    )
+    options = parser.parse_args(words)
+    from pinjoint.sheet import sheet  # it imports reportlab and scipy
+
+    made = sheet(model_of(options), options.theory)
+    with writing(options.output):
+        replace(options.output, made)
+    return ANSWERED

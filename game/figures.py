@@ -1,0 +1,174 @@
+"""Figures and tables of structures on paper, as reports and sheets have them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from pinjoint.components import written
+from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, deflections, extremes, is_frame
+from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.language import joined, tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends, nodes
+from pinjoint.components.tags import DiagramShown
+from pinjoint.components.view import Cut, View
+from pinjoint.force_method.guide import scale_to
+from pinjoint.systems.render.backends.paper import GUTTER, PIXEL, WIDTH, Block, Figure, Layout
+from pinjoint.systems.render.marks import Mark, Strokes, Text
+from pinjoint.systems.render.model.arrows import largest_force
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import Theme, load_theme
+from pinjoint.systems.render.typography import text_width
+from pinjoint.systems.statics.equations import largest
+from pinjoint.tables import Table
+
+_BESIDE_IT, _ABOVE, _BELOW = 56.0, 46.0, 62.0  # pixels around a structure, for supports, loads and diagrams
+_MOMENTS = 12.0  # pixels more beside it, for the values of moments
+_SHORTER = 1.3  # times the largest force: that of the longest arrow
+_DIAGRAM = 30.0  # pixels of the largest axial force
+_ROWS = 120  # of a table that are printed
+_TICK, _TYPE = 4.0, 11.0  # points: of dimensions, half a tick and the size of numbers
+
+
+def signs(model: Model) -> str:
+    """What is positive."""
+    if bends(model):
+        return tr(
+            "Signs: axial forces are positive in tension, reactions to the right, upwards and counter-clockwise."
+            " Bending moments M are drawn on the side in tension, and are positive where that is the right side of a rod,"
+            " seen from its start to its end."
+        )
+    return tr("Signs: axial forces are positive in tension, reactions to the right and upwards.")
+
+
+def diagram_titles() -> dict[str, str]:
+    """Captions of diagrams, by quantity."""
+    return {
+        MOMENT: tr("Bending moments M (kN·m), on the side in tension"),
+        SHEAR: tr("Shear forces V (kN)"),
+        AXIAL: tr("Axial forces N (kN)"),
+    }
+
+
+def shape(model: Model) -> tuple[float, float]:
+    """Width and height of a structure (m)."""
+    position = model.particles.position
+    width, height = np.ptp(position, axis=0).tolist() if len(position) else (1.0, 1.0)
+    return max(width, 1e-9), max(height, 1e-9)
+
+
+def in_a_row(layout: Layout, model: Model) -> int:
+    """How many figures stand in a row."""
+    wide, high = shape(model)
+    return 2 if wide > layout.flat * high else 3
+
+
+def figure(
+    layout: Layout,
+    model: Model,
+    caption: str,
+    *,
+    diagrams: str | None = None,
+    cuts: Sequence[Cut] = (),
+    has_units: bool = True,
+    row: int = 0,
+    unit: float = 1.0,
+    measured: bool = False,
+    moved: bool = False,
+) -> Block:
+    """A picture of a model, with the diagrams of a quantity.
+
+    row: how many figures stand in a row; 0: by its shape. unit: pixels per point of its texts. measured: with its
+    dimensions and all names. moved: so that displacements are well seen, by which factor the caption says.
+    """
+    model.delete(list(model.grids))
+    wide, high = shape(model)
+    row = row or in_a_row(layout, model)
+    width = int((WIDTH - (row - 1) * GUTTER) / row / PIXEL)
+    beside = unit * (_BESIDE_IT + _MOMENTS * is_frame(model))
+    above, below = unit * _ABOVE, unit * _BELOW
+    room = width - 2.0 * beside
+    height = int(min(room * high / wide + above + below, layout.figure / PIXEL * unit))
+    view = View(legend=False, has_scale=False, all_diagrams=diagrams is not None, quantity=diagrams or AXIAL)
+    view.names = measured
+    view.cuts, view.has_units, view.pixel_ratio = tuple(cuts), has_units, unit
+    view.camera = Camera(viewport=Viewport(0, 0, width, height))
+    inner = Viewport(int(beside), int(above), int(room), int(height - above - below))
+    view.camera.fit(model.particles.position, 0.0, inner, 1.0)
+    view.largest_force = _SHORTER * largest_force(model, view)
+    pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
+    model.settings.diagram_scale = scale_to(_DIAGRAM, pulled)
+    if moved:
+        bows = extremes(deflections(model, np.flatnonzero(model.rods.bending_stiffness > 0.0)))[0]
+        most = max(float(np.hypot(*model.particles.displacement.T).max(initial=0.0)), largest(bows))
+        model.settings.displacement_scale = scale = scale_to(_DIAGRAM * unit / view.camera.scale, most)
+        caption = joined([caption, tr("displacements × {scale}", scale=written.given(scale))], ", ")
+    loaded_ones = [p for p in model.particles if any(p.force) or p.moment] + [
+        one.particle for one in model.loads
+    ]
+    model.tag_only(loaded_ones, DiagramShown)
+    theme = replace(load_theme("light"), background=(255, 255, 255, 255))
+    picture = compose(model, view, theme)
+    if measured:
+        picture.marks.extend(_dimensions(model, view, theme))
+    made = Figure(picture, layout.text(caption, "caption"))
+    return made.width, [made]
+
+
+def _dimensions(model: Model, view: View, theme: Theme) -> Iterator[Mark]:
+    """Chains of dimensions (m) below the structure and on its right, of what is not too close together."""
+    unit, places = view.pixel_ratio, model.particles.position[nodes(model)]
+    if not len(places):
+        return
+    pixels, size = view.camera.to_pixels(places), round(_TYPE * unit)
+    high = pixels.max(axis=0)
+    for axis, line in ((0, high[1] + (_BELOW - 14.0) * unit), (1, high[0] + (_BESIDE_IT - 16.0) * unit)):
+        known, first = np.unique(places[:, axis].round(6), return_index=True)
+        ticks = pixels[first, axis]
+        texts = [written.given(length) for length in np.diff(known).tolist()]
+        room = [text_width(text, size) if axis == 0 else 1.2 * size for text in texts]
+        if any(wide > abs(gap) for wide, gap in zip(room, np.diff(ticks).tolist(), strict=True)):
+            known, ticks = known[[0, -1]], ticks[[0, -1]]
+            texts = [written.given(float(known[1] - known[0]))]
+        if len(known) < 2:
+            continue
+        ends = np.full((len(ticks), 2), line)
+        ends[:, axis] = ticks
+        across = _TICK * unit * np.eye(2)[1 - axis]
+        yield Strokes(ends[:-1], ends[1:], 0.75 * unit, theme.ink)
+        yield Strokes(ends - across, ends + across, 0.75 * unit, theme.ink)
+        for (x, y), text in zip(0.5 * (ends[:-1] + ends[1:]), texts, strict=True):
+            if axis == 0:
+                yield Text(text, x, y - 0.75 * size, size, theme.text, anchor="centre")
+            else:
+                yield Text(text, x + 4.0 * unit, y, size, theme.text)
+
+
+def printed(
+    layout: Layout,
+    table: Table,
+    *,
+    without_last: bool = False,
+    texts: Mapping[str, Sequence[str]] | None = None,
+) -> list[Block]:
+    """A table on paper, with a note where it is longer than is printed; perhaps without its last column.
+
+    texts: further columns of texts, by their titles, behind the names.
+    """
+    columns = table.columns[:-1] if without_last else table.columns
+    head = [table.corner, *(f"{column.title}\n{column.unit}" for column in columns)]
+    rows = table[1 : 1 + min(len(table.names), _ROWS)]
+    if table.summed:
+        rows.append(table[len(table) - 1])
+    between = [*zip(*(texts or {}).values(), strict=True)]
+    rows = [(row[0], *(between[at] if texts else ()), *row[1 : len(head)]) for at, row in enumerate(rows)]
+    head[1:1] = texts or {}
+    made = layout.tables(head, rows, summed=table.summed)
+    left_out = len(table.names) - _ROWS
+    if left_out > 0:
+        note = tr("{count} more rows are not printed; sums are of all.", count=left_out)
+        made[-1][1].append(layout.text(note, "caption"))
+    return made
