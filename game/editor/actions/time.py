@@ -9,11 +9,14 @@ from operator import attrgetter
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.language import joined, plural, tr
+from pinjoint.components.load import load_ends
+from pinjoint.components.rod import nodes
+from pinjoint.components.settings import HUBS, STATICS
 from pinjoint.editor.actions.editing import nudge
 from pinjoint.editor.context import Context
 from pinjoint.systems.collision.impacts import TooManyImpacts
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.input.actions import PAUSE, actions_of
+from pinjoint.systems.input.actions import actions_of
 from pinjoint.systems.physics.pace import natural_pace
 
 action = actions_of("Time")
@@ -25,19 +28,48 @@ MOST_IMPACTS = 1_000_000  # of free discs that the steps of one press may hold, 
 MANY = 2000  # elements; the pace that suits larger models takes too long to find
 
 
-action(
+@action(
     "toggle run",
     "space",
     "run or pause",
     pressed=lambda context: context.scenes.active.tools == "simulation",
     pressed_as=lambda context: ("pause", ""),
-)(lambda context, pixel: context.scenes.request("pause" if context.scene == "simulation" else "simulation"))
+)
+def _toggle_run(context: Context, pixel: Vector) -> None:
+    """Run or pause; from statics, go on from the equilibrium, if it moves, or else begin undeformed."""
+    if context.scene == STATICS and not _begin_from_statics(context):
+        return
+    context.scenes.request("pause" if context.scene == "simulation" else "simulation")
+
+
+def _begin_from_statics(context: Context) -> bool:
+    """Let the model begin in its equilibrium, as one entry of the log; False where it would only stay there.
+
+    Asked a second time, it begins undeformed instead.
+    """
+    model, statics = context.model, context.document.statics
+    moving = model.tables["particles"].storage("velocity").any() or not nodes(model).all()
+    if statics.offered == statics.revision:
+        context.restart()
+        return True
+    if statics.balanced and not moving and math.inf not in load_ends(model):
+        statics.offered = statics.revision
+        context.notice = tr(
+            "In equilibrium nothing would move. Press Space again to let it begin undeformed, with its loads at once."
+        )
+        return False
+    if statics.balanced:
+        context.settle(model.settings.load_steps, anew=True)
+    return True
+
+
 action("pause")(lambda context, pixel: context.scenes.request("pause"))
 
 
 def _arrow(way: float, far: bool, context: Context, pixel: Vector) -> None:
     """An arrow key: once there is a run, right is forward in time; before, it moves what is selected."""
-    if context.document.at_beginning and nudge(context, (way, 0.0), far=far):
+    still = context.scene == STATICS or context.document.at_beginning
+    if still and nudge(context, (way, 0.0), far=far):
         return
     model, steps = context.model, 1
     size = model.clock.step_size
@@ -49,22 +81,24 @@ def _arrow(way: float, far: bool, context: Context, pixel: Vector) -> None:
     _step(context, round(way) * steps)
 
 
-action("arrow right", "right", "step forward", (PAUSE,), repeats=True)(partial(_arrow, 1.0, False))
-action("arrow left", "left", "step back", (PAUSE,), repeats=True)(partial(_arrow, -1.0, False))
-action("far arrow right", "shift+right", "skip ahead", (PAUSE,), repeats=True)(partial(_arrow, 1.0, True))
-action("far arrow left", "shift+left", "skip back", (PAUSE,), repeats=True)(partial(_arrow, -1.0, True))
-action("step", ".", "step forward", (PAUSE,), repeats=True)(lambda context, pixel: _step(context, 1))
+action("arrow right", "right", "step forward", HUBS, repeats=True)(partial(_arrow, 1.0, False))
+action("arrow left", "left", "step back", HUBS, repeats=True)(partial(_arrow, -1.0, False))
+action("far arrow right", "shift+right", "skip ahead", HUBS, repeats=True)(partial(_arrow, 1.0, True))
+action("far arrow left", "shift+left", "skip back", HUBS, repeats=True)(partial(_arrow, -1.0, True))
+action("step", ".", "step forward", HUBS, repeats=True)(lambda context, pixel: _step(context, 1))
 action(
     "step back",
     ",",
     "step back",
-    (PAUSE,),
+    HUBS,
     repeats=True,
     enabled=lambda context: context.document.timeline.first < context.model.clock.steps,
 )(lambda context, pixel: _step(context, -1))
 
 
 def _step(context: Context, steps: int) -> None:
+    if context.scene == STATICS:
+        raise Refusal("No time passes in statics. Press Space to run, or Q to leave it.")
     clock, impacts = context.model.clock, context.simulation.impacts
     impacts.most_awaited = MOST_IMPACTS
     try:
@@ -116,6 +150,8 @@ def _restart(context: Context, pixel: Vector) -> None:
 @action("settle", "e", "find equilibrium at once", enabled=attrgetter("model.particles.count"))
 def _settle(context: Context, pixel: Vector) -> None:
     """Go to the static equilibrium under the full load."""
+    if context.scene == STATICS:
+        raise Refusal("What is shown is the equilibrium already. Z changes the theory, Q leaves statics.")
     context.settle()
     context.view.follow(context.model, clear=True)
 
