@@ -22,6 +22,7 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.table import flags
+from pinjoint.components.theory import EXACT, FIRST_ORDER, THEORIES
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import DENSE, Assembly, Matrix, sparse_order, spread_by_ends
 from pinjoint.systems.statics.bending import Bending, Bent
@@ -128,7 +129,7 @@ class Structure:
     sense: 1 for cables (tension only), −1 for contacts (compression only), else 0.
     own_weight: stiffness added to that of its rods in the `weight` of a particle (kN/m), (n,).
     flat: rods whose axis keeps its direction, such as contacts with a straight side.
-    linear: first-order theory: elongations and equilibrium about the original positions.
+    first_order: elongations and equilibrium about the original positions.
     bending: of the rods; None where none bends. sparse: matrices are, above DENSE unknowns.
     """
 
@@ -147,21 +148,21 @@ class Structure:
     body: Rows
     own_weight: Array
     flat: Flags
-    linear: bool
+    first_order: bool
     bending: Bending | None = None
     sparse: bool = True
 
     @classmethod
-    def of(cls, model: Model, geometry: str = "exact") -> Structure:
-        """The structure of a model in "exact" or "linear" geometry; without plasticity no rod yields."""
-        if geometry not in ("exact", "linear"):
-            raise WrongValue("Geometry is '{geometry}'; it must be 'exact' or 'linear'.", geometry=geometry)
+    def of(cls, model: Model, theory: str = EXACT) -> Structure:
+        """The structure of a model in "first-order" or "exact" theory; without plasticity no rod yields."""
+        if theory not in THEORIES:
+            raise WrongValue("Theory is '{theory}'; it must be 'first-order' or 'exact'.", theory=theory)
         particles, rods = model.particles, model.rods
         yields = bool(model.settings.plasticity)
         ends = rods.between.astype(np.intp)
         body = np.unique(lowest_joined(particles.count, ends), return_inverse=True)[1]
         fixed = particles.fixed.copy()
-        bending = Bending.of(model, bows=geometry == "exact") if bends(model) else None
+        bending = Bending.of(model, bows=theory == EXACT) if bends(model) else None
         if bending is not None:
             fixed = np.column_stack([fixed, particles.fixed_rotation])
         return cls(
@@ -180,7 +181,7 @@ class Structure:
             body=body,
             own_weight=np.zeros(particles.count),
             flat=np.zeros(rods.count, dtype=bool),
-            linear=geometry == "linear",
+            first_order=theory == FIRST_ORDER,
             bending=bending,
         )
 
@@ -385,7 +386,7 @@ class Structure:
         flowing = (force != elastic) & ~slack
         bent = None
         if self.bending is not None:
-            bent = self.bending.bent(slopes, force, axis, length, share, couples=not self.linear)
+            bent = self.bending.bent(slopes, force, axis, length, share, couples=not self.first_order)
         return Response(
             elongation=elongation,
             strain=strain,
@@ -407,7 +408,7 @@ class Structure:
         """How far the chords of rods have turned: atan2(D × Δ, D · (D + Δ)), and full turns if they bend; (rods,)."""
         difference, change = self.difference, self.relative(displacement)
         sine = difference[:, 0] * change[:, 1] - difference[:, 1] * change[:, 0]
-        if self.linear:
+        if self.first_order:
             squared: Array = np.where(self.original_length > 0.0, self.original_length, np.inf) ** 2
             return sine / squared
         cosine = (difference * (difference + change)).sum(axis=1)
@@ -437,7 +438,7 @@ class Structure:
         """
         original = self.original_length
         straight = self.difference / np.where(original > 0.0, original, 1.0)[:, None]
-        if self.linear:
+        if self.first_order:
             return (straight * change).sum(axis=1), straight, original
         present = self.difference + change
         length = np.hypot(present[:, 0], present[:, 1])
@@ -476,7 +477,9 @@ class Structure:
         """What the whole distributed forces would add to the particles' forces, besides halves of them on both ends."""
         if self.bending is None or response.bent is None:
             return np.zeros(self.unknown.shape)
-        moment, shear = self.bending.carried(response.bent, response.axis, response.length, not self.linear)
+        moment, shear = self.bending.carried(
+            response.bent, response.axis, response.length, not self.first_order
+        )
         return -self._sheared(response, 0.0, moment, shear)
 
     def _sheared(self, response: Response, pull: Array | float, moment: Array, shear: Array) -> Array:
@@ -535,7 +538,7 @@ class Structure:
         """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of soft rods) + Σ N/L (1 − a aᵀ), and what bending adds."""
         along = np.where(soft, 0.0, self.stiffness / self.rest_length)
         across = np.zeros_like(along)
-        geometric = geometric and not self.linear
+        geometric = geometric and not self.first_order
         if geometric:
             length = np.where(self.flat, np.inf, response.length)
             across = np.where(length > 0.0, response.axial_force / np.where(length > 0.0, length, 1.0), 0.0)

@@ -26,6 +26,7 @@ from pinjoint.components.derived import along_and_across
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion
@@ -199,7 +200,7 @@ class _Released:
     """
 
     def __init__(self, model: Model, unknowns: Sequence[Unknown]) -> None:
-        self._model, self._whole = model, (whole := Structure.of(model, "linear"))
+        self._model, self._whole = model, (whole := Structure.of(model, FIRST_ORDER))
         bars, supports = np.zeros(len(whole.ends), dtype=bool), np.zeros(whole.fixed.shape, dtype=bool)
         self._hinges = np.zeros(whole.ends.shape, dtype=bool)
         for unknown in unknowns:

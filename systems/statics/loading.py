@@ -60,7 +60,7 @@ class Loading:
                 if tangent.flowing.any():
                     raise self._collapse(tangent.flowing, motion)
                 raise self._mechanism(motion, tangent.slack)
-            if not self.path.structure.linear and (self.point.plastic_strain <= CRUSHED).any():
+            if not self.path.structure.first_order and (self.point.plastic_strain <= CRUSHED).any():
                 raise self._crushed(self.path.structure.spread(tangent.rate))
         raise self._lost()
 

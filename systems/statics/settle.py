@@ -17,6 +17,7 @@ from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.theory import EXACT
 from pinjoint.components.wording import quoted
 from pinjoint.systems.statics.bending import needed_parts
 from pinjoint.systems.statics.contacts import Discs, Sinking
@@ -94,7 +95,7 @@ class Settlement:
 def settle(
     model: Model,
     factors: Sequence[float] | float = (1.0,),
-    geometry: str = "exact",
+    theory: str = EXACT,
     start: Start | None = None,
 ) -> Settlement:
     """The equilibria at these load factors in turn, from a state (None: the present one); the model is unchanged.
@@ -103,7 +104,7 @@ def settle(
     In a model that has not moved yet, lack of fit and moved supports act before the load; in any other model the
     forces that hold its present state are exchanged for the load, and load factors on the way count both.
     Ends early, with the status "mechanism", "collapse" or "limit reached", where there is no further equilibrium.
-    geometry: "linear" for first-order theory about the original positions, with the same yielding.
+    theory: "first-order" about the original positions, with the same yielding, or "exact".
     Raises FieldError for numbers too large or too small to compute with, ValueError for no load factors.
     """
     wanted = _factors(factors)
@@ -111,8 +112,8 @@ def settle(
     if problem:
         raise FieldError(problem)
     start = start or Start.present(model)
-    found = _Settling(model, geometry, start).through(wanted)
-    if geometry == "exact" and model.settings.collisions:
+    found = _Settling(model, theory, start).through(wanted)
+    if theory == EXACT and model.settings.collisions:
         discs = Discs.of(model, start.displacement)
         if len(discs.radius) > 1 and _touch(model, discs, wanted, found, start):
             return _SettlingWithDiscs(model, discs, start).through(wanted)
@@ -157,9 +158,9 @@ def _factors(given: Sequence[float] | float) -> list[float]:
 class _Settling:
     """A structure on its way through the load factors: its last equilibrium and the load that holds it there."""
 
-    def __init__(self, model: Model, geometry: str, start: Start) -> None:
+    def __init__(self, model: Model, theory: str, start: Start) -> None:
         self.model = model
-        self.structure = Structure.of(model, geometry)
+        self.structure = Structure.of(model, theory)
         self.external = External.of(model)
         self.events = [Event("note", 0.0, note) for note in self.external.notes]
         self.looked_for_bodies = self.soft = False
@@ -373,7 +374,7 @@ class _SettlingWithDiscs(_Settling):
     """Settling with discs that rest on one another and on the structure, under each whole load at once."""
 
     def __init__(self, model: Model, discs: Discs, start: Start) -> None:
-        super().__init__(model, "exact", start)
+        super().__init__(model, EXACT, start)
         self.discs = discs
         self.structure = self.bare = discs.beside(self.structure)
         self.point = replace(self.point, displacement=self._all(self.point.displacement))

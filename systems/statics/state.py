@@ -76,7 +76,7 @@ class StaticState:
         if structure.bending is not None and response.bent is not None:
             elastic += 1000.0 * float(structure.bending.energy(response.bent.slopes).sum())
         length = response.length
-        if structure.linear:  # response.length is that about which rods turn
+        if structure.first_order:  # response.length is that about which rods turn
             length = structure.original_length + response.elongation - structure.misfit
         return cls(
             displacement=displacement[:count, :2],
@@ -96,7 +96,7 @@ class StaticState:
                 structure.rotation(displacement)[structure.ends[rods]],
                 (response.axial_force[rods], structure.end_moments(response)[rods]),
                 share=response.share,
-                first_order=structure.linear,
+                first_order=structure.first_order,
             ),
             elastic_energy=elastic,
             contacts=structure.ends[pressing],

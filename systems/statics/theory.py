@@ -10,6 +10,7 @@ import numpy as np
 
 from pinjoint.components.language import begun, plural, tr
 from pinjoint.components.model import Model
+from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
@@ -113,7 +114,7 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
     displacements of constrained directions as moved supports. factor: of forces and loads; all else acts in full.
     Raises NoEquilibrium, naming the particles, for a mechanism or a free body that the load moves.
     """
-    structure, start = Structure.of(model, "linear"), start or Start.present(model)
+    structure, start = Structure.of(model, FIRST_ORDER), start or Start.present(model)
     load = External.of(model).at(factor)
     for body in loose_bodies(structure, load):
         if body.pull:
@@ -162,7 +163,7 @@ class Indeterminacy:
         m rods between particles with f free directions have m − r states of self-stress and f − r mechanisms. A rigid end of
         a rod that bends counts as one more of the m, a rotation as a direction.
         """
-        structure = Structure.of(model, "linear").with_translations()
+        structure = Structure.of(model, FIRST_ORDER).with_translations()
         unsupported = replace(structure, fixed=np.zeros_like(structure.fixed)).with_translations()
         deformations, rank = structure.deformations, _rank(structure)
         static, internal = deformations - rank, deformations - _rank(unsupported)
@@ -171,7 +172,7 @@ class Indeterminacy:
 
 def mechanisms(model: Model) -> Array:
     """Motions (k, n, 2 or 3) that deform no rod, the largest of each 1; of large structures at most 20."""
-    structure = Structure.of(model, "linear").with_translations()
+    structure = Structure.of(model, FIRST_ORDER).with_translations()
     if structure.size <= FULL:
         modes = _null_space(structure.scaled_compatibility) / structure.measure[:, None]
     else:
@@ -188,7 +189,7 @@ def self_stress(model: Model) -> Array:
 
     Where members bend, and beside them the moments on all rigid ends, in the order of the rods (k, rods + ends).
     """
-    structure = Structure.of(model, "linear").with_translations()
+    structure = Structure.of(model, FIRST_ORDER).with_translations()
     compatibility = structure.compatibility(structure.unmoved)
     if structure.size <= FULL:
         states = _null_space(structure.scaled_compatibility.T) * structure.reaches[:, None]
@@ -261,7 +262,7 @@ def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Arra
     Müller-Breslau, it is the deflection that a unit displacement in its place causes; of a displacement, by Maxwell, that
     under a unit load there. Raises NoEquilibrium.
     """
-    theory = FirstOrder(model, Structure.of(model, "linear"))
+    theory = FirstOrder(model, Structure.of(model, FIRST_ORDER))
     structure, unit = theory.structure, np.zeros(theory.structure.fixed.shape)
     if quantity == "axial_force":
         pull = np.zeros_like(structure.difference)

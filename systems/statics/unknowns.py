@@ -14,6 +14,7 @@ from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends, rigid_joints
+from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.wording import missing
 from pinjoint.systems.statics.equations import AXES, Array, Structure
 
@@ -182,7 +183,7 @@ def redundants(model: Model) -> list[Unknown]:
 
 def _equilibrium(model: Model) -> tuple[Array, list[Unknown]]:
     """Columns of the equilibrium matrix and their unknowns: rods, moments at rigid ends (by a mean length), supports."""
-    held = Structure.of(model, "linear")
+    held = Structure.of(model, FIRST_ORDER)
     free = replace(held, fixed=np.zeros_like(held.fixed), sparse=False).with_translations()
     rigid = np.zeros(free.ends.shape, dtype=bool) if free.bending is None else free.bending.rigid
     weights = np.concatenate([np.where(rigid.any(axis=1), _NEVER, 1.0), np.full(int(rigid.sum()), _FIRST)])

@@ -105,22 +105,22 @@ def _elongation(model: Model, name: str, displacement: Document) -> float:
     return float((at[end] - at[start]) @ change) / math.dist(at[start], at[end])
 
 
-def solve(model: Model, factors: Sequence[float] = (1.0,), geometry: str = "exact") -> list[Document]:
+def solve(model: Model, factors: Sequence[float] = (1.0,), theory: str = "exact") -> list[Document]:
     """Follow the equilibrium through the load factors in turn; return one state per factor.
 
-    `geometry` is "exact", or "linear" for first-order theory with the same yielding. A state holds, by
+    `theory` is "exact", or "first-order" with the same yielding. A state holds, by
     names, displacement [m], reaction [kN], axial_force [kN], plastic_strain, and factor and residual [kN].
     Raises NoEquilibrium where stability is lost: a limit point, a bifurcation, or a plastic collapse.
     """
-    return list(path(model, factors, geometry))
+    return list(path(model, factors, theory))
 
 
 def path(
-    model: Model, factors: Sequence[float], geometry: str = "exact", largest_increment: float = 1.0
+    model: Model, factors: Sequence[float], theory: str = "exact", largest_increment: float = 1.0
 ) -> Iterator[Document]:
     """The same, one state after the other. largest_increment: of the way to the next factor; in smaller ones rods that
     unload do so nearer to where they should."""
-    followed = Path(model, geometry, largest_increment)
+    followed = Path(model, theory, largest_increment)
     followed.settle_initial_state()
     yield from (followed.follow_to(factor) for factor in factors)
 
@@ -192,11 +192,11 @@ class Path:
     and of the forces that hold the given initial state.
     """
 
-    def __init__(self, model: Model, geometry: str = "exact", largest_increment: float = 1.0):
+    def __init__(self, model: Model, theory: str = "exact", largest_increment: float = 1.0):
         self.largest_increment = largest_increment
-        if geometry not in ("exact", "linear"):
-            raise ValueError(f"The geometry {geometry!r} is unknown; use 'exact' or 'linear'.")
-        self.exact = geometry == "exact"
+        if theory not in ("exact", "first-order"):
+            raise ValueError(f"The theory {theory!r} is unknown; use 'exact' or 'first-order'.")
+        self.exact = theory == "exact"
         self.elements = read(model)
         self.free = ~np.array([particle.fixed for particle in self.elements.particles]).ravel()
         self.u = np.array([particle.displacement for particle in self.elements.particles]).ravel()

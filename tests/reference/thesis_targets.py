@@ -1,14 +1,14 @@
 """Equilibria of the thesis' structures to 15 digits, from two independent solvers that agree to 1e-12.
 
-EA 164 640 kN, or ten times that; 215 kN strength in the plastic cases. "linear" is first-order theory, "exact"
-exact geometry; one block per load factor in turn: N axial forces (tension positive) and R reactions in kN,
+EA 164 640 kN, or ten times that; 215 kN strength in the plastic cases. By theory, one block per load factor in
+turn: N axial forces (tension positive) and R reactions in kN,
 u displacements in mm, y up, e plastic strains.
 """
 
 from typing import Any
 
 _TABLE = """
-triangle_EA linear 1
+triangle_EA first-order 1
 N AB -28.2842712474619  BC -197.989898732233  CA 20
 R A 0 20  C -120 140
 u A -0.242954324586978 0  B 0.909290740310808 -1.49583436576588  C 0 0
@@ -18,7 +18,7 @@ N AB -28.3427681444064  BC -198.0274601694  CA 20.0678998039911
 R A 0 20.0147921184446  C -120 139.985207881555
 u A -0.24377915213789 0  B 0.907917109896699 -1.49775136271324  C 0 0
 
-square_EA linear 1
+square_EA first-order 1
 N AB 10.3553390593274  BC 10.3553390593274  CD -89.6446609406726  DA 10.3553390593274  AC -14.6446609406726
   BD -14.6446609406726
 R A 0 0  D 0 100
@@ -32,13 +32,13 @@ R A 0 -0.0303915983862364  D 0 100.030391598386
 u A -0.094228188905764 0  B 0.361674102062684 0.094378639795711  C 0.455902613246284 -0.816919641727717
   D 0 0
 
-square_plastic_EA linear 1
+square_plastic_EA first-order 1
 N AB 45  BC 45  CD -215  DA 45  AC -63.6396103067893  BD -63.6396103067893
 R A 0 0  D 0 260
 u A -0.409985422740525 0  B 1.56959931317036 0.409985422740525  C 1.97958473591088 -3.54918404908124  D 0 0
 e CD -0.00106024320473249
 
-square_plastic_EA linear 0
+square_plastic_EA first-order 0
 N AB 18.0761184457488  BC 18.0761184457488  CD 18.0761184457488  DA 18.0761184457488  AC -25.5634918610405
   BD -25.5634918610405
 R A 0 0  D 0 0
@@ -60,7 +60,7 @@ R A 0 0  D 0 0
 u A -0.165911452582267 0  B 0.634770594132463 0.165520655812962  C 0.799827352062061 -1.4358433986003  D 0 0
 e CD -0.00106769425735208
 
-triangle_10EA linear 1
+triangle_10EA first-order 1
 N AB -28.2842712474619  BC -197.989898732233  CA 20
 R A 0 20  C -120 140
 u A -0.0242954324586978 0  B 0.0909290740310808 -0.149583436576588  C 0 0
@@ -70,7 +70,7 @@ N AB -28.2900820368933  BC -197.993644793742  CA 20.0067574784493
 R A 0 20.0014598680364  C -120 139.998540131964
 u A -0.0243036412517605 0  B 0.0909153796645309 -0.149602542701694  C 0 0
 
-square_10EA linear 1
+square_10EA first-order 1
 N AB 10.3553390593274  BC 10.3553390593274  CD -89.6446609406726  DA 10.3553390593274  AC -14.6446609406726
   BD -14.6446609406726
 R A 0 0  D 0 100
@@ -84,14 +84,14 @@ R A 0 -0.00303715176035169  D 0 100.00303715176
 u A -0.00943336022966722 0  B 0.0361242023593204 0.00943486258916746
   C 0.0455575629107416 -0.081675203152143  D 0 0
 
-square_plastic_10EA linear 1
+square_plastic_10EA first-order 1
 N AB 45  BC 45  CD -215  DA 45  AC -63.6396103067893  BD -63.6396103067893
 R A 0 0  D 0 260
 u A -0.0409985422740525 0  B 0.156959931317036 0.0409985422740525  C 0.197958473591088 -0.354918404908124
   D 0 0
 e CD -0.000106024320473249
 
-square_plastic_10EA linear 0
+square_plastic_10EA first-order 0
 N AB 18.0761184457488  BC 18.0761184457488  CD 18.0761184457488  DA 18.0761184457488  AC -25.5634918610405
   BD -25.5634918610405
 R A 0 0  D 0 0
@@ -121,7 +121,7 @@ _QUANTITIES = {"N": "axial_kN", "R": "reactions_kN", "u": "displacement_mm", "e"
 def _read() -> dict[str, dict[str, list[dict[str, Any]]]]:
     found: dict[str, dict[str, list[dict[str, Any]]]] = {}
     for block in _TABLE.split("\n\n"):
-        case, geometry, factor, *words = block.split()
+        case, theory, factor, *words = block.split()
         state: dict[str, Any] = {"factor": float(factor), **{name: {} for name in _QUANTITIES.values()}}
         for word in words:
             if word in _QUANTITIES:
@@ -132,7 +132,7 @@ def _read() -> dict[str, dict[str, list[dict[str, Any]]]]:
                 entries[element] = [entries[element], float(word)]
             else:
                 entries[element] = float(word)
-        found.setdefault(case, {}).setdefault(geometry, []).append(state)
+        found.setdefault(case, {}).setdefault(theory, []).append(state)
     return found
 
 
