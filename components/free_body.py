@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pinjoint.components.bent import distributed_shares, is_frame
 from pinjoint.components.derived import chord_rotation, rigid_slopes
 from pinjoint.components.language import tr
-from pinjoint.components.load import History, factor_at, static_factor
+from pinjoint.components.load import factor_now
 from pinjoint.components.model import Model
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.written import ROUNDING
@@ -88,12 +88,6 @@ def _lengths(model: Model) -> Vectors:
     return found
 
 
-def _factor(model: Model, history: History) -> float:
-    """The factor of a load in what columns show."""
-    static = model.solution is not None
-    return model.share * static_factor(history) if static else factor_at(history, model.clock.time)
-
-
 def _of_bending(model: Model, along: Vectors) -> Vectors:
     """What bending and distributed forces add on the ends of every rod, dampers included, (m, 2, 3)."""
     rods, particles = model.rods, model.particles
@@ -149,7 +143,7 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
     loads, rest = model.loads, applied.copy()
     turns = bool(rigid_joints(model)[row])
     for k in np.flatnonzero(loads.on == row).tolist():
-        now = _factor(model, loads.history[k]) * np.append(loads.force[k], loads.moment[k])
+        now = factor_now(model, loads.history[k]) * np.append(loads.force[k], loads.moment[k])
         rest -= now
         x, y, turn = now.tolist()
         found.append(Force(model.describe(loads[k]), "load", x, y, k, turn * turns))

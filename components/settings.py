@@ -19,7 +19,10 @@ DIAGRAMS = (
     "V",
 )  # of axial forces, bending moments and shears, in the order in which they follow one another
 INTEGRATORS = ChainMap(EXTENSIONS.integrators, {AUTOMATIC: None})  # the names of all there are at any time
-PAUSE, STATICS = HUBS = ("pause", "statics")  # the scenes from which a person edits, and in which a model may open
+PAUSE, STATICS = HUBS = (
+    "pause",
+    "statics",
+)  # the scenes from which a person edits, and in which a model may open
 MOST_LOAD_STEPS = 100
 
 

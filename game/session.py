@@ -16,6 +16,7 @@ from pinjoint.components.language import begun, joined, listed, marked, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod
+from pinjoint.components.settings import PAUSE
 from pinjoint.components.view import View, lesson_share
 from pinjoint.components.wording import missing
 from pinjoint.documents.format import ModelError
@@ -41,7 +42,6 @@ from pinjoint.systems.input.actions import (
     FILES,
     FORMS,
     LIVE,
-    PAUSE,
     SIMULATION,
     TEXT,
 )

@@ -44,13 +44,13 @@ class Statics:
     @property
     def settlement(self) -> Settlement | None:
         """The way through the load steps, up to date; None where `problem` says why there is none."""
-        self._find()
+        self.solve()
         return self._settlement
 
     @property
     def columns(self) -> Mapping[str, Column]:
         """What columns of the model show, by "table.field", up to date."""
-        self._find()
+        self.solve()
         return self._columns
 
     @property
@@ -105,7 +105,7 @@ class Statics:
 
     # --- finding -------------------------------------------------------------------------------------
 
-    def _find(self) -> None:
+    def solve(self) -> None:
         """Solve anew if the document changed."""
         model = self._model
         settings, particles = model.tables["settings"], model.tables["particles"]
@@ -119,10 +119,10 @@ class Statics:
             return
         self._of = wanted
         with model.own_state():
-            self._solve()
+            self._find()
         self.revision = model.next_revision()
 
-    def _solve(self) -> None:
+    def _find(self) -> None:
         from pinjoint.systems.statics.external import External
         from pinjoint.systems.statics.settle import settle
         from pinjoint.systems.statics.state import Start

@@ -152,3 +152,10 @@ class Start:
         """A model's present state."""
         particles = model.particles
         return cls(particles.displacement.copy(), model.rods.plastic_strain.copy(), particles.rotation.copy())
+
+    @classmethod
+    def undeformed(cls, model: Model, plastic_strain: Array) -> Start:
+        """The undeformed beginning with this plastic strain: only supports that have settled are displaced."""
+        particles = model.particles
+        moved = np.where(particles.fixed, particles.displacement, 0.0)
+        return cls(moved, plastic_strain, np.where(particles.fixed_rotation, particles.rotation, 0.0))

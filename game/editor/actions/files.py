@@ -41,6 +41,8 @@ def _save_again(context: Context, pixel: Vector) -> None:
 
 action("load", "d", "open a model", HUBS)(lambda context, pixel: context.scenes.request_from_pause("load"))
 action("load", "ctrl+o", "open a model")(ACTIONS["load"].perform)
+
+
 @action("new", "ctrl+n", "start a new model")
 def _new(context: Context, pixel: Vector) -> None:
     """An empty model, whose structure is drawn in statics."""

@@ -144,4 +144,6 @@ def _toggle_diagrams(context: Context, guide: Guide, pixel: Vector) -> None:
             one.view.all_diagrams = context.view.all_diagrams
 
 
-action("back", "escape", "leave the force method")(lambda context, pixel: context.scenes.request(context.scenes.hub))
+action("back", "escape", "leave the force method")(
+    lambda context, pixel: context.scenes.request(context.scenes.hub)
+)

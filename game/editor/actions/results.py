@@ -14,8 +14,8 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, has_strength
 from pinjoint.components.settings import DIAGRAMS, HUBS, PAUSE, STATICS
-from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.components.tags import DiagramShown
+from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.documents.shapes import NoShape
 from pinjoint.editor.actions.view import toggle
 from pinjoint.editor.context import Context
@@ -189,9 +189,7 @@ def _usual(model: Model, elements: Sequence[Handle]) -> tuple[Sequence[Handle], 
     return elements, field, "x" if abs(x) > abs(y) else "y"
 
 
-@action(
-    "force method", "k", "force method", HUBS, while_drawing=False, enabled=attrgetter("model.rods.count")
-)
+@action("force method", "k", "force method", HUBS, while_drawing=False, enabled=attrgetter("model.rods.count"))
 def _force_method(context: Context, pixel: Vector) -> None:
     if context.model.particles.count == 0:
         raise Refusal("There is nothing to solve yet; draw a structure with P and L, or open one with D.")

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
-from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.editor.context import Context, Scene
 from pinjoint.systems.base import Phase, System
 
@@ -21,7 +20,9 @@ class Statics(Scene):
     def hint(self, context: Context) -> str:
         if context.model.particles.count == 0:
             return tr("click a tool, then the canvas     right click menu     F1 help")
-        return tr("click select     I diagrams N, M, V     Z theory     N table     Space run     Q pause     F1 help")
+        return tr(
+            "click select     I diagrams N, M, V     Z theory     N table     Space run     Q pause     F1 help"
+        )
 
 
 class Solve(System):
@@ -40,5 +41,4 @@ class Solve(System):
 
     def process(self, frame: Any) -> None:
         """Solve, if anything changed."""
-        statics = frame.session.document.statics
-        assert statics.revision >= 0
+        frame.session.document.statics.solve()

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from pinjoint import Session
+from pinjoint.components.settings import PAUSE
 from pinjoint.components.tags import DiagramShown
 from pinjoint.documents.library import DATA_VARIABLE, models_folder
 from pinjoint.editor.scenes.force_method import ForceMethod
@@ -17,7 +18,6 @@ from pinjoint.systems.input.actions import (
     FORCE_METHOD,
     LOAD,
     MENU,
-    PAUSE,
     PROPERTIES,
     SAVE,
     SIMULATION,
