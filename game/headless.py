@@ -16,7 +16,7 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
-from pinjoint.components.settings import Environment
+from pinjoint.components.settings import PAUSE, Environment
 from pinjoint.components.table import Table
 from pinjoint.components.view import View
 from pinjoint.components.wording import missing, quoted
@@ -156,6 +156,9 @@ class Headless(Context):
     @contextmanager
     def _time_passing(self) -> Iterator[Simulation]:
         """Time passes inside: it is one run in the log, which stops, by ModError, where a mod fails."""
+        if self.model.solution is not None:  # whose columns show no run
+            self.scenes.request(PAUSE)
+            self.scenes.apply(self)
         self._act_in_scene()
         document, simulation = self.document, self.simulation
         document.note_beginning()

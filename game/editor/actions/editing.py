@@ -10,7 +10,7 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.language import listed, marked, plural, tr
-from pinjoint.components.settings import HUBS
+from pinjoint.components.settings import HUBS, STATICS
 from pinjoint.editor.clipboard import Part
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import Drawing, DrawSupport, tool_in_hand
@@ -174,6 +174,8 @@ def _escape(context: Context, pixel: Vector) -> None:
         context.scenes.request("pause")
     elif context.has_selected:
         context.select()
+    elif context.scene == STATICS:
+        context.notice = tr("Nothing is selected. Q leaves statics, F1 shows all keys.")
     else:
         context.notice = tr("Nothing is selected, and the run is paused. Space starts it, F1 shows all keys.")
 

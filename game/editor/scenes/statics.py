@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from pinjoint.components.bent import MOMENT
 from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
+from pinjoint.components.tags import DiagramShown
 from pinjoint.editor.context import Context, Scene
 from pinjoint.systems.base import Phase, System
 
@@ -16,6 +18,12 @@ class Statics(Scene):
     name = "statics"
     heading = marked("Statics")
     targets = ("pause", "simulation", "properties", "save", "load", "force method")
+
+    def enter(self, context: Context) -> None:
+        """Show the diagrams of all elements, unless some are shown."""
+        view = context.view
+        if not (view.all_diagrams or context.model.any_tagged(DiagramShown)):
+            view.all_diagrams, view.quantity = True, MOMENT
 
     def hint(self, context: Context) -> str:
         if context.model.particles.count == 0:
