@@ -182,7 +182,8 @@ class Table(Generic[H]):
 
         Where the world shows a solution in place of the state, that of the solution.
         """
-        solution = self.world.solution
+        world = self._world()  # which may be gone
+        solution = world.solution if world is not None else None
         if solution is not None and (found := solution.columns.get(f"{self.name}.{name}")) is not None:
             return found
         storage = self.current(name)

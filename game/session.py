@@ -16,7 +16,7 @@ from pinjoint.components.language import begun, joined, listed, marked, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod
-from pinjoint.components.settings import PAUSE
+from pinjoint.components.settings import PAUSE, STATICS
 from pinjoint.components.view import View, lesson_share
 from pinjoint.components.wording import missing
 from pinjoint.documents.format import ModelError
@@ -50,6 +50,10 @@ from pinjoint.systems.schedule import Plan
 
 MODEL, SCRIPT = ".json", ".jsonl"  # files that a person may drop on the window
 FARTHEST = 1e9  # pixels from the corner of the window to which a click may be
+_SAID = {  # where a key does nothing that does something in pause
+    SIMULATION: marked("{action}: press Space to pause first."),
+    STATICS: marked("{action}: no time passes in statics. Space runs, Q leaves it."),
+}
 LARGEST_SIDE, LARGEST_RATIO = 65_536, 64.0  # of a window, in pixels, and in pixels per point
 
 
@@ -219,8 +223,8 @@ class Session(Headless):
             left = self._left_for_tools() if press.for_tools else ""
             if press.action != left:  # the tool that opens a scene closes it, too
                 self.act(press.action, press.at)
-        elif self.scene == SIMULATION and (found := ACTIONS.at(PAUSE, key)) and not ACTIONS.at(self.scene, key):
-            self.notice = tr("{action}: press Space to pause first.", action=begun(tr(found[1].title)))
+        elif self.scene in _SAID and (found := ACTIONS.at(PAUSE, key)) and not ACTIONS.at(self.scene, key):
+            self.notice = tr(_SAID[self.scene], action=begun(tr(found[1].title)))
 
     def _record(self, key: str, pixel: Vector | None) -> None:
         if self.recorder is not None:

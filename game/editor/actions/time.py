@@ -11,17 +11,18 @@ from pinjoint.components.field import Vector
 from pinjoint.components.language import joined, plural, tr
 from pinjoint.components.load import load_ends
 from pinjoint.components.rod import nodes
-from pinjoint.components.settings import HUBS, STATICS
+from pinjoint.components.settings import HUBS, PAUSE, STATICS
 from pinjoint.editor.actions.editing import nudge
 from pinjoint.editor.context import Context
 from pinjoint.systems.collision.impacts import TooManyImpacts
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.input.actions import actions_of
+from pinjoint.systems.input.actions import SIMULATION, actions_of
 from pinjoint.systems.physics.pace import natural_pace
 
 action = actions_of("Time")
 
 PACE_STEP = 2.0
+WITH_TIME = (SIMULATION, PAUSE)  # the scenes in which keys of time mean something
 FAR = 0.2  # s shown that one press skips
 MOST_WORK = 1_000_000  # steps × elements of one skip, some 20 ms
 MOST_IMPACTS = 1_000_000  # of free discs that the steps of one press may hold, about a second
@@ -69,7 +70,7 @@ action("pause")(lambda context, pixel: context.scenes.request("pause"))
 def _arrow(way: float, far: bool, context: Context, pixel: Vector) -> None:
     """An arrow key: once there is a run, right is forward in time; before, it moves what is selected."""
     still = context.scene == STATICS or context.document.at_beginning
-    if still and nudge(context, (way, 0.0), far=far):
+    if (still and nudge(context, (way, 0.0), far=far)) or context.scene == STATICS:
         return
     model, steps = context.model, 1
     size = model.clock.step_size
@@ -85,20 +86,18 @@ action("arrow right", "right", "step forward", HUBS, repeats=True)(partial(_arro
 action("arrow left", "left", "step back", HUBS, repeats=True)(partial(_arrow, -1.0, False))
 action("far arrow right", "shift+right", "skip ahead", HUBS, repeats=True)(partial(_arrow, 1.0, True))
 action("far arrow left", "shift+left", "skip back", HUBS, repeats=True)(partial(_arrow, -1.0, True))
-action("step", ".", "step forward", HUBS, repeats=True)(lambda context, pixel: _step(context, 1))
+action("step", ".", "step forward", (PAUSE,), repeats=True)(lambda context, pixel: _step(context, 1))
 action(
     "step back",
     ",",
     "step back",
-    HUBS,
+    (PAUSE,),
     repeats=True,
     enabled=lambda context: context.document.timeline.first < context.model.clock.steps,
 )(lambda context, pixel: _step(context, -1))
 
 
 def _step(context: Context, steps: int) -> None:
-    if context.scene == STATICS:
-        raise Refusal("No time passes in statics. Press Space to run, or Q to leave it.")
     clock, impacts = context.model.clock, context.simulation.impacts
     impacts.most_awaited = MOST_IMPACTS
     try:
@@ -156,12 +155,12 @@ def _settle(context: Context, pixel: Vector) -> None:
     context.view.follow(context.model, clear=True)
 
 
-action("faster", "+", "run faster", repeats=True, while_drawing=True)(
+action("faster", "+", "run faster", WITH_TIME, repeats=True, while_drawing=True)(
     lambda context, pixel: context.document.live.clock.faster(PACE_STEP)
 )
-action("slower", "-", "run slower", repeats=True, while_drawing=True)(
+action("slower", "-", "run slower", WITH_TIME, repeats=True, while_drawing=True)(
     lambda context, pixel: context.document.live.clock.faster(1.0 / PACE_STEP)
 )
-action("natural pace", "0", "reset the speed to suit the model", while_drawing=True)(
+action("natural pace", "0", "reset the speed to suit the model", WITH_TIME, while_drawing=True)(
     lambda context, pixel: setattr(context.document.live.clock, "factor", 1.0)
 )
