@@ -147,6 +147,12 @@ def deflected(model: Model, row: int, shares: Array) -> tuple[Array, Array]:
     return values(bow, shares).T * state.left, slopes / max(float(state.length[0]), 1e-300)
 
 
+def deflections(model: Model, rows: Rows) -> Array:
+    """How far the axes of some rods are from their chords now (m), to the left, as polynomials (n, 5)."""
+    state = _state(model, rows)
+    return state.cubic + state.sag
+
+
 def _drift(state: _State) -> Array | None:
     """How far points move along the chords, so that ends with slopes φ lie at angles φ to them, not arctan φ."""
     length = state.length
@@ -228,6 +234,18 @@ def zeros(polynomials: Array) -> tuple[Rows, Array]:
     which, shares = np.concatenate([which, touching]), np.concatenate([0.5 * (low + high), samples[at + 1]])
     order = np.lexsort((shares, which))
     return which[order], shares[order]
+
+
+def extremes(polynomials: Array) -> tuple[Array, Array]:
+    """The least and the greatest value of polynomials (n, d) from 0 to 1, and the shares where they are, (n, 2) each."""
+    count = len(polynomials)
+    which, inside = zeros(derivative(polynomials))
+    which = np.concatenate([np.arange(count), np.arange(count), which])
+    shares = np.concatenate([np.zeros(count), np.ones(count), inside])
+    found = values(polynomials[which], shares[:, None])[:, 0]
+    order = np.lexsort((found, which))
+    both = order[np.searchsorted(which[order], np.arange(count)[:, None] + [0, 1]) - [0, 1]]
+    return found[both], shares[both]
 
 
 def values(polynomials: Array, shares: Array) -> Array:

@@ -21,7 +21,7 @@ from pinjoint.components.view import THESIS, Cut, View
 from pinjoint.force_method import index, words
 from pinjoint.force_method.copies import base_structure, loaded, still, unloaded
 from pinjoint.force_method.guide import scale_to
-from pinjoint.force_method.tables import PRODUCTS, Table, Tables
+from pinjoint.force_method.tables import PRODUCTS, Tables
 from pinjoint.force_method.words import EXACT
 from pinjoint.systems.render.backends.paper import (
     GUTTER,
@@ -43,6 +43,7 @@ from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.force_method import SetState
 from pinjoint.systems.statics.unknowns import Unknown
+from pinjoint.tables import Table
 
 _BESIDE_IT, _ABOVE, _BELOW = 56.0, 46.0, 62.0  # pixels around a structure, for supports, loads and diagrams
 _MOMENTS = 12.0  # pixels more beside it, for the values of moments

@@ -5,107 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import overload
 
 import numpy as np
 
 from pinjoint.components import written
 from pinjoint.components.field import CM, ENDS
-from pinjoint.components.language import decimals, joined, tr
+from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends, nodes
 from pinjoint.force_method import index
 from pinjoint.systems.statics.equations import AXES, Array, Rows, largest
 from pinjoint.systems.statics.force_method import SetState, Solution, Terms, bulge
+from pinjoint.tables import Column, Table
 
-_SMALL = 1e-2  # smaller numbers are written as multiples of a power of 1000
 _FINER = 5  # significant digits of forces that are added
 PRODUCTS = 4  # unknowns up to which all products of virtual work are listed
 _SHOWN = 3  # unknowns up to which each has a column of superposition
-_ABOVE = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-class Column:
-    """Numbers of one kind below each other: with equal decimals, and a power of ten in the head if all are small.
-
-    summed: there is a sum at the foot; decimals are then such that what is written adds up, if two more are enough.
-    size: of the largest number of its kind; None: that in the column. least: of what is no rounding.
-    """
-
-    def __init__(
-        self,
-        title: str,
-        unit: str,
-        values: Array,
-        *,
-        summed: bool = False,
-        digits: int = written.DIGITS,
-        size: float | None = None,
-        least: float = 0.0,
-    ) -> None:
-        self.summed = summed
-        values = np.where(np.abs(values) <= written.ROUNDING * least, 0.0, values)
-        total = float(values.sum())
-        greatest = max(float(np.abs(values).max(initial=0.0)), abs(total) if summed else 0.0)
-        greatest = greatest if size is None else size
-        power = math.floor(math.log10(greatest)) if greatest > 0.0 else 0
-        self.power = 0 if greatest >= _SMALL or not greatest else 3 * math.floor(power / 3)
-        self._scaled, self._total = values / 10.0**self.power, total / 10.0**self.power
-        self._decimals = max(digits - 1 - (power - self.power), 0)
-        self._nothing = written.ROUNDING * greatest / 10.0**self.power
-        if summed:
-            self._decimals = self._adding_up()
-        ten = f"10{str(self.power).translate(_ABOVE)} " if self.power else ""
-        self.title, self.unit = title, f"{ten}{unit}".strip()
-
-    def _adding_up(self) -> int:
-        for places in range(self._decimals, self._decimals + written.MORE_DIGITS + 1):
-            rounded = float(np.round(self._scaled, places).sum())
-            if abs(rounded - round(self._total, places)) < 0.5 * 10.0**-places:
-                return places
-        return self._decimals
-
-    @property
-    def head(self) -> str:
-        """Title and unit."""
-        return f"{self.title} ({self.unit})" if self.unit else self.title
-
-    def text(self, row: int) -> str:
-        """The number in a row; below the last one their sum, "" where there is none."""
-        if row == len(self._scaled):
-            return self._text(self._total) if self.summed else ""
-        return self._text(float(self._scaled[row]))
-
-    def _text(self, value: float) -> str:
-        if abs(value) <= self._nothing:
-            return "0"
-        return decimals(f"{round(value, self._decimals) + 0.0:.{self._decimals}f}".replace("-", "−"))
-
-
-class Table(Sequence[tuple[str, ...]]):
-    """Columns beside the names of what their rows belong to, below a head; each row is written on demand, since a large
-    structure has more than fit a page."""
-
-    def __init__(self, corner: str, names: Sequence[str], columns: Sequence[Column]) -> None:
-        self.corner, self.names, self.columns = corner, names, columns
-        self.summed = any(column.summed for column in columns)
-
-    def __len__(self) -> int:
-        return 1 + len(self.names) + self.summed
-
-    @overload
-    def __getitem__(self, index: int) -> tuple[str, ...]: ...
-    @overload
-    def __getitem__(self, index: slice) -> list[tuple[str, ...]]: ...
-    def __getitem__(self, index: int | slice) -> tuple[str, ...] | list[tuple[str, ...]]:
-        places = range(len(self))[index]
-        return self._row(places) if isinstance(places, int) else [self._row(place) for place in places]
-
-    def _row(self, place: int) -> tuple[str, ...]:
-        if place == 0:
-            return (self.corner, *(column.head for column in self.columns))
-        name = "Σ" if place > len(self.names) else self.names[place - 1]
-        return (name, *(column.text(place - 1) for column in self.columns))
 
 
 @dataclass(frozen=True)

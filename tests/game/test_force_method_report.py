@@ -11,11 +11,12 @@ from pinjoint.components.language import spoken
 from pinjoint.components.view import TEXTBOOK, THESIS
 from pinjoint.documents import models
 from pinjoint.force_method.report import contents, report
-from pinjoint.force_method.tables import Column, Tables
+from pinjoint.force_method.tables import Tables
 from pinjoint.systems.render.backends.paper import LAYOUTS, WIDTH, Layout
 from pinjoint.systems.statics.force_method import solve
 from pinjoint.systems.statics.theory import linear
 from pinjoint.systems.statics.unknowns import Unknown, redundants
+from pinjoint.tables import Column
 from tests.benchmarks.models import lattice
 from tests.game.force_method_models import panels, propped, two_span
 

@@ -1,0 +1,150 @@
+"""Results: what a model's columns say now, in tables of rods, particles and sums that window, CSV and sheet show alike."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pinjoint.components.bent import MOMENT, deflections, extremes, inner_forces
+from pinjoint.components.derived import chord_rotation, rigid_slopes
+from pinjoint.components.field import CM, ENDS
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends, has_strength, nodes, rigid_joints, utilisation
+from pinjoint.components.written import ROUNDING
+from pinjoint.tables import Array, Column, Table
+
+_KN, _KNM, _MRAD, _PERCENT = ("kN", 1.0), ("kN·m", 1.0), ("mrad", 1e3), ("%", 100.0)
+_ALL_NOTHING = 1e-3  # m, kN, kN·m, rad: numbers that are all smaller than the share ROUNDING of it are rounding
+
+
+@dataclass(frozen=True)
+class Results:
+    """Tables of the state that a model's columns show, in the units on screen.
+
+    rods, particles: a row for each of the model's, in its order, empty where there can be no number, such as the reaction
+    of what is not held. sums: of loads and of reactions, which are opposite in equilibrium.
+    """
+
+    rods: Table
+    particles: Table
+    sums: Table
+
+    @classmethod
+    def of(cls, model: Model, *, first_order: bool = False) -> Results:
+        """The results of a model; first_order: places and levers are those of the original shape, not of the present one."""
+        rods, particles = model.rods, model.particles
+        place = particles.position if first_order else particles.position + particles.displacement
+        force = _largest(rods.end_axial_force, rods.shear, particles.reaction, particles.applied_force)
+        of_forces = force * float(np.ptp(place, axis=0).max(initial=0.0)) if len(place) else 0.0
+        moment = max(of_forces, _largest(rods.bending_moment, particles.reaction_moment))
+        bowed = 0.0 if first_order else _by_bowing(model)
+        sums = _sums(model, place, bowed, force, moment)
+        length = rods.original_length if first_order else rods.length
+        return cls(_of_rods(model, length, force, moment), _of_particles(model, force, moment), sums)
+
+
+def _of_rods(model: Model, length: Array, force: float, moment: float) -> Table:
+    """N and utilisation of trusses; where rods bend, N, V and M at both ends, and the extremes between them."""
+    rods, columns = model.rods, []
+    if bends(model) or rods.distributed_force.any():
+        stiff = np.where(rods.bending_stiffness > 0.0, 1.0, np.nan)[:, None]  # bars have neither V nor M
+        bearing = np.where(rods.distributed_force.any(axis=1), 1.0, stiff[:, 0])[:, None]
+        every = np.arange(rods.count)
+        moments, places = extremes(inner_forces(model, every, MOMENT))
+        moments, places = bearing * moments, places * length[:, None]
+        places[~(np.abs(moments) > ROUNDING * moment)] = np.nan
+        bows = stiff[:, 0] * np.abs(extremes(deflections(model, every))[0]).max(axis=1, initial=0.0)
+        columns += _parts("end_axial_force", "N", ENDS, _KN, rods.end_axial_force, force)
+        columns += _parts("shear", "V", ENDS, _KN, bearing * rods.shear, force)
+        columns += _parts("bending_moment", "M", ENDS, _KNM, stiff * rods.bending_moment, moment)
+        for side, key, title in ((1, "largest_moment", tr("M max")), (0, "least_moment", tr("M min"))):
+            columns.append(_column(key, title, _KNM, moments[:, side], moment))
+            columns.append(_column(f"{key}_at", tr("at x"), CM, places[:, side]))
+        columns.append(_column("deflection", tr("deflection"), CM, bows))
+    else:
+        columns.append(_column("axial_force", "N", _KN, rods.axial_force, force))
+    if has_strength(model):
+        columns.append(_column("utilisation", tr("utilisation"), _PERCENT, utilisation(model)))
+    return Table(tr("rod"), rods.names, columns)
+
+
+def _of_particles(model: Model, force: float, moment: float) -> Table:
+    """Displacements and reactions; where rods bend, rotations and moments of clamps, too."""
+    particles, turns = model.particles, rigid_joints(model)
+    moved, reaction = particles.displacement, np.where(particles.fixed, particles.reaction, np.nan)
+    columns = _parts("displacement", tr("displacement"), "xy", CM, moved, _largest(moved))
+    if turns.any():
+        rotation = np.where(turns, particles.rotation, np.nan)
+        columns.append(_column("rotation", tr("rotation"), _MRAD, rotation))
+    columns += _parts("reaction", tr("reaction"), "xy", _KN, reaction, force)
+    if turns.any():
+        clamped = np.where(turns & particles.fixed_rotation, particles.reaction_moment, np.nan)
+        columns.append(_column("reaction_moment", tr("moment"), _KNM, clamped, moment))
+    return Table(tr("particle"), particles.names, columns)
+
+
+def _sums(model: Model, place: Array, bowed: float, force: float, moment: float) -> Table:
+    """Sums of the loads and of the reactions of joints, and of their moments about the first that is held.
+
+    bowed: what the moment of the loads is more, since forces act on bent axes.
+    """
+    particles, used, turns = model.particles, nodes(model), rigid_joints(model)
+    held = np.flatnonzero(used & particles.fixed.any(axis=1))
+    first = int(held[0]) if len(held) else 0
+    about = particles.names[first] if particles.count else ""
+    rows = []
+    for forces, moments, more in (
+        (particles.applied_force, particles.applied_moment, bowed),
+        (particles.reaction, particles.reaction_moment, 0.0),
+    ):
+        turning = _cross(place - place[first : first + 1], forces) + np.where(turns, moments, 0.0)
+        rows.append(np.column_stack([forces, turning])[used].sum(axis=0) + np.array([0.0, 0.0, more]))
+    x, y, turning = np.array(rows).T
+    columns = [
+        _column("force_x", tr("force x"), _KN, x, force, summed=True),
+        _column("force_y", tr("force y"), _KN, y, force, summed=True),
+        _column("moment", tr("moment about {particle}", particle=about), _KNM, turning, moment, summed=True),
+    ]
+    return Table(tr("sum"), [tr("loads"), tr("reactions")], columns)
+
+
+def _by_bowing(model: Model) -> float:
+    """The moment of distributed forces about chords, from which bent axes are away (kN·m)."""
+    rods, rotation = model.rods, model.particles.rotation
+    area = (rods.load_shares * rigid_slopes(rods, rotation[rods.between], chord_rotation(model))).sum(axis=1)
+    first, second = rods.between.astype(np.intp).T
+    chord = rods.difference + model.particles.displacement[second] - model.particles.displacement[first]
+    left = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.maximum(rods.length, 1e-300)[:, None]
+    return float((area * _cross(left, rods.distributed_force)).sum())
+
+
+def _cross(arm: Array, force: Array) -> Array:
+    """Moments (n,) of forces (n, 2)."""
+    moment: Array = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
+    return moment
+
+
+def _parts(
+    key: str, title: str, parts: Sequence[str], shown: tuple[str, float], values: Array, size: float
+) -> list[Column]:
+    """Columns of both parts of values (n, 2)."""
+    return [
+        _column(f"{key}_{part}", f"{title} {tr(part)}", shown, column, size)
+        for part, column in zip(parts, values.T, strict=True)
+    ]
+
+
+def _column(
+    key: str, title: str, shown: tuple[str, float], values: Array, size: float = 0.0, *, summed: bool = False
+) -> Column:
+    """A column; size: of the largest number of its kind, beside which others are rounding."""
+    unit, factor = shown
+    least = factor * max(size, _largest(values), _ALL_NOTHING)
+    return Column(title, unit, factor * values, key=key, alike=summed, summed=summed, least=least)
+
+
+def _largest(*of: Array) -> float:
+    return max(float(np.nanmax(np.abs(values), initial=0.0)) for values in of)
