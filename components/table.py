@@ -183,9 +183,10 @@ class Table(Generic[H]):
         Where the world shows a solution in place of the state, that of the solution.
         """
         world = self._world()  # which may be gone
-        solution = world.solution if world is not None else None
-        if solution is not None and (found := solution.columns.get(f"{self.name}.{name}")) is not None:
-            return found
+        if world is not None and world.solution is not None:
+            found: Column | None = world.solution.columns.get(f"{self.name}.{name}")
+            if found is not None:
+                return found
         storage = self.current(name)
         shown = self._shown.get(name)
         if shown is None or shown[0] is not storage or len(shown[1]) != self.count:

@@ -76,16 +76,16 @@ def control_of(model: Model, key: int, slider: Slider) -> Control | None:
     field, value = model.tables[aim.table].fields[aim.field], _value(aim, handle)
     unit, factor = field.shown
     text = tr(field.absent) if value is None else _written(value * factor, unit)
-    text = joined([text, _now(handle, aim.field)], ", ")
+    text = joined([text, _now(model, handle, aim.field)], ", ")
     share = None if value is None else slider.share_of(value)
     return Control(key, slider.title or _title(model, aim, handle, field), text, share, "×")
 
 
-def _now(handle: Handle, field: str) -> str:
+def _now(model: Model, handle: Handle, field: str) -> str:
     """How much of a load acts now, where that is not all of it."""
     if not isinstance(handle, Load) or field not in (Load.force.name, Load.moment.name):
         return ""
-    factor = factor_now(handle.world, handle.history)
+    factor = factor_now(model, handle.history)
     if not math.isfinite(factor) or f"{factor:.0%}" == "100%":
         return ""
     return tr("now {share} %", share=f"{100.0 * factor:.0f}".replace("-", "−"))

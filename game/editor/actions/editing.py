@@ -10,7 +10,7 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.language import listed, marked, plural, tr
-from pinjoint.components.settings import HUBS, STATICS
+from pinjoint.components.settings import HUBS, PAUSE, STATICS
 from pinjoint.editor.clipboard import Part
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import Drawing, DrawSupport, tool_in_hand
@@ -248,7 +248,11 @@ for _held, _name, _title in (
     for _way, _direction in {"left": (-1, 0), "right": (1, 0), "up": (0, 1), "down": (0, -1)}.items():
         if "move" in _name or _direction[1]:  # without Ctrl, left and right go through time
             _act = partial(_move, _direction, "far" in _name, "move" in _name)
-            action(f"{_name} {_way}", _held + _way, _title, HUBS, repeats=True)(_act)
+            action(
+                f"{_name} {_way}", _held + _way, _title, HUBS if "move" in _name else (PAUSE,), repeats=True
+            )(_act)
+            if "move" in _name:  # where no time passes
+                action(f"{_name} {_way}", _held.replace("ctrl+", "") + _way, _title, (STATICS,))(_act)
 
 
 def _can_go(by: int, context: Context) -> bool:

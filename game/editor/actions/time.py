@@ -11,7 +11,7 @@ from pinjoint.components.field import Vector
 from pinjoint.components.language import joined, plural, tr
 from pinjoint.components.load import load_ends
 from pinjoint.components.rod import nodes
-from pinjoint.components.settings import HUBS, PAUSE, STATICS
+from pinjoint.components.settings import PAUSE, STATICS
 from pinjoint.editor.actions.editing import nudge
 from pinjoint.editor.context import Context
 from pinjoint.systems.collision.impacts import TooManyImpacts
@@ -69,8 +69,7 @@ action("pause")(lambda context, pixel: context.scenes.request("pause"))
 
 def _arrow(way: float, far: bool, context: Context, pixel: Vector) -> None:
     """An arrow key: once there is a run, right is forward in time; before, it moves what is selected."""
-    still = context.scene == STATICS or context.document.at_beginning
-    if (still and nudge(context, (way, 0.0), far=far)) or context.scene == STATICS:
+    if context.document.at_beginning and nudge(context, (way, 0.0), far=far):
         return
     model, steps = context.model, 1
     size = model.clock.step_size
@@ -82,10 +81,10 @@ def _arrow(way: float, far: bool, context: Context, pixel: Vector) -> None:
     _step(context, round(way) * steps)
 
 
-action("arrow right", "right", "step forward", HUBS, repeats=True)(partial(_arrow, 1.0, False))
-action("arrow left", "left", "step back", HUBS, repeats=True)(partial(_arrow, -1.0, False))
-action("far arrow right", "shift+right", "skip ahead", HUBS, repeats=True)(partial(_arrow, 1.0, True))
-action("far arrow left", "shift+left", "skip back", HUBS, repeats=True)(partial(_arrow, -1.0, True))
+action("arrow right", "right", "step forward", (PAUSE,), repeats=True)(partial(_arrow, 1.0, False))
+action("arrow left", "left", "step back", (PAUSE,), repeats=True)(partial(_arrow, -1.0, False))
+action("far arrow right", "shift+right", "skip ahead", (PAUSE,), repeats=True)(partial(_arrow, 1.0, True))
+action("far arrow left", "shift+left", "skip back", (PAUSE,), repeats=True)(partial(_arrow, -1.0, True))
 action("step", ".", "step forward", (PAUSE,), repeats=True)(lambda context, pixel: _step(context, 1))
 action(
     "step back",

@@ -326,8 +326,8 @@ def _draw_areas(sheet: Sheet, name: str, diagram: _Diagram, heights: Values, dra
         each, width = np.repeat(rows, outline.shape[1] - 1), 1.25 if diagram.is_straight else 1.4
         start, end, of_line = first, last, each
         if sheet.view.provisional:
-            start, end, pieces = dashed(first, last, _DASH * u)
-            of_line = each[pieces]
+            start, end, dash = dashed(first, last, _DASH * u)
+            of_line = each[dash]
         sheet.marks.append(Strokes(start, end, width * u, faded(colour, 0.9), ("rods", of_line)))
         sheet.occupancy.line(first, last, FAINT)
     if name != "zero":
