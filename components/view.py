@@ -302,6 +302,11 @@ class View:
             self.camera.fit(drawn_places(model), MARGIN, room, self.pixel_ratio)
         self.fitted = True
 
+    @property
+    def pixel(self) -> Vector:
+        """The pixel where the pointer is; the middle of the view if it is outside."""
+        return self.pointer or self.camera.middle
+
     def follow(self, model: Model, *, clear: bool = False) -> None:
         """Fit the model anew if it has left the picture, unless somebody looks closer; clear: or lies under something."""
         shown = self.shows(model, COVERED) and not self._meets_sliders(model) if clear else self.shows(model)

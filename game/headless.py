@@ -35,7 +35,6 @@ from pinjoint.systems.schedule import Schedule
 if TYPE_CHECKING:  # they import scipy
     from pinjoint.systems.statics.buckling import Buckling
     from pinjoint.systems.statics.path import Curve
-    from pinjoint.systems.statics.verify import Comparison
 
 
 class Still(Scene):
@@ -192,15 +191,6 @@ class Headless(Context):
         finally:
             simulation.before_steps.remove(follow)
         self.schedule.run(Phase.EVENTS, frame, headless=True)
-
-    def compare(self) -> Comparison:
-        """The run as it is now beside linear and exact theory: `rows` of every element, and the `worst`.
-
-        >>> s = Session.open("isostatic")
-        >>> s.compare().worst("linear").title
-        'displacement y of particle B'
-        """
-        return self.document.assessment.comparison()
 
     def load_path(
         self, factor: float = 1.0, *, until: str | None = None, points: int = 500, branch: int = 0

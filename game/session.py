@@ -15,13 +15,14 @@ from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.language import begun, joined, listed, marked, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
-from pinjoint.components.rod import Rod
-from pinjoint.components.settings import PAUSE, STATICS
+from pinjoint.components.rod import Rod, bends
+from pinjoint.components.settings import NO_DIAGRAMS, PAUSE, STATICS
 from pinjoint.components.view import View, lesson_share
 from pinjoint.components.wording import missing
-from pinjoint.documents.format import ModelError
+from pinjoint.documents.format import ModelError, missing_mods
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.frame import Actions, Exaggerate, Frame, ShowView
+from pinjoint.editor.readouts import readouts
 from pinjoint.editor.routing import Press
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
@@ -82,6 +83,7 @@ class Session(Headless):
         self._clicked: tuple[object, ...] | None = None  # what took the last press, if that was a click
         # Of the window (pixels).
         self.extent = self.view.camera.viewport.width, self.view.camera.viewport.height
+        self.documents.on_leave, self.documents.on_begin = self._leave_document, self._begin_document
         self.offer_tools()
         self._begin_document()
 
@@ -165,7 +167,7 @@ class Session(Headless):
             self.view.menu = None
         self.exaggerate()
         try:
-            action.perform(self, pixel if pixel is not None else self.pointer)
+            action.perform(self, pixel if pixel is not None else self.view.pixel)
         except (Refusal, FieldError) as error:
             self.notice = str(error)
         self.scenes.apply(self)
@@ -173,10 +175,33 @@ class Session(Headless):
         self.offer_tools()
         self._make_room()
 
+    def _leave_document(self) -> None:
+        """Another document comes into use."""
+        self.leave_gesture()
+        self.view.all_diagrams = False
+
     def _begin_document(self) -> None:
         """Show the document that is open now, with its sliders, from the first frame on."""
-        self.view.sliders = sliders_of(self)
-        super()._begin_document()
+        model, view = self.model, self.view
+        self.show_state()
+        view.sliders = sliders_of(self)
+        self._make_room()
+        view.fit(model)
+        if model.settings.diagrams != NO_DIAGRAMS:
+            view.all_diagrams, view.quantity = True, model.settings.diagrams
+        if model.rods.count:
+            view.rigid = bends(model)
+        self.notice = missing_mods(model) or self.notice
+        self._go_on()
+
+    def _make_room(self) -> None:
+        """Fit the model beside panels that are large enough to cover it.
+
+        Called after actions, never because of time or frames, so that a recording is replayed in the same picture.
+        """
+        view = self.view
+        wanted = view.wanted or view.free_bodies or any(readout.is_large for readout in readouts(self))
+        view.share(self.model, shares=view.legend and bool(wanted))
 
     def offer_tools(self) -> None:
         """Let toolbar, sliders and help show what can be done now; what is not seen stays as it was."""
@@ -207,7 +232,7 @@ class Session(Headless):
             self._record(key, pixel)
             self._open_files(key.removeprefix(FILES).splitlines())
             return
-        pixel = self.pointer if pixel is None else _near(pixel)
+        pixel = self.view.pixel if pixel is None else _near(pixel)
         press = Press(self, key, pixel)
         here = self.scene, self.view.menu is not None, self.view.help > 0, press.hit and press.hit.action
         if key == "double click" and self._clicked not in (None, here):
@@ -217,8 +242,8 @@ class Session(Headless):
         elif press.action is not None:
             self.notice, self._clicked = "", here if key == "click" else None
             self._record(key, pixel)
-            if self.time_passes:
-                self.get_ready()
+            if self.time_passes and self.has_program(self.simulation):
+                self.document.get_ready()
             self.view.pressed = press.hit
             left = self._left_for_tools() if press.for_tools else ""
             if press.action != left:  # the tool that opens a scene closes it, too
@@ -282,7 +307,7 @@ class Session(Headless):
         script = Script(path) if path.suffix.lower() == SCRIPT else None
         if script is None or not script.task_count:  # a lesson opens its models itself
             source = path if script is None else script.source
-            self.open_here(source, keep=self.model.particles.count > 0)
+            self.documents.open(source, keep=self.model.particles.count > 0)
         self.lesson = script or self.lesson
 
     def resize(self, width: int, height: int, pixel_ratio: float = 1.0) -> None:

@@ -131,7 +131,7 @@ class Assessment:
         return self._simulation.halted and self._simulation.reason is StopReason.REST
 
     def comparison(self) -> Comparison:
-        """The run as it is now beside theory."""
+        """The run as it is now beside linear and exact theory: `rows` of every element, and the `worst`."""
         return self.theories.beside(self._model)
 
     @property

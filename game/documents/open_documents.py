@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -137,6 +137,12 @@ class OpenDocument:
             self.beginning = self.simulation.present()
             self.assessment.begin(self.beginning)
 
+    def get_ready(self) -> None:
+        """Account for edits as if a frame had begun, so that what follows does not depend on when frames do."""
+        self.note_beginning()
+        if not self.simulation.halted:
+            self.simulation.advance(0)
+
     def restart(self) -> None:
         """Go back to before the first run and the first settling, keeping all edits; the log ends the run.
 
@@ -209,6 +215,17 @@ class OpenDocument:
 
     # --- edits and the file ------------------------------------------------------------------------
 
+    def save(self, path: str | Path) -> None:
+        """Write the model, with its present state, to a file."""
+        self.simulation.account_for_edits()
+        models.save(self.model, Path(path))
+
+    def save_as(self, path: Path) -> str:
+        """Write the model to a file that is its own from now on, and say so. Raises ModelError."""
+        self.save(path)
+        self.file, self.practice, self.saved = ModelFile.at(path), False, self.model.revision
+        return tr("Saved as '{name}'.", name=path.stem)
+
     @property
     def newest(self) -> int:
         """The revision of the newest change to anything that a file holds."""
@@ -233,9 +250,14 @@ class OpenDocument:
 
 
 class OpenDocuments:
-    """The open documents, one of them in use; undo and redo lead to the others."""
+    """The open documents, one of them in use; undo and redo lead to the others.
+
+    on_leave, on_begin: called before another one comes into use, and when it has.
+    """
 
     def __init__(self, model: Model, schedule: Schedule, pull: Pull, file: ModelFile) -> None:
+        self.on_leave: Callable[[], None] = lambda: None
+        self.on_begin: Callable[[], None] = lambda: None
         self._schedule = schedule
         self._pull = pull
         self._documents = [OpenDocument(model, schedule, pull, file)]
@@ -252,12 +274,16 @@ class OpenDocuments:
         """The document in use."""
         return self._documents[self._at]
 
-    def add(self, model: Model, file: ModelFile, *, keep: bool = False) -> None:
-        """Open a model; the document in use until now stays open if it has unsaved work, or is to be kept.
+    def open(self, source: Source | Model, file: ModelFile | None = None, *, keep: bool = False) -> None:
+        """Open a model, of its own file unless another is given. Raises ModelError.
 
-        What could be repeated in that one is forgotten, as by any edit. Work in later documents, from which undo
-        came back, is repeated, and they stand before the new one.
+        The document in use until now stays open if it has unsaved work, or is to be kept; what could be repeated in
+        it is forgotten, as by any edit. Work in later documents, from which undo came back, is repeated, and they stand
+        before the new one.
         """
+        model = source if isinstance(source, Model) else models.load(source)
+        file = file_of(source) if file is None else file
+        self.on_leave()
         self.current.leave()
         self.current.history.forget_undone()
         earlier, later = self._documents[: self._at], self._documents[self._at + 1 :]
@@ -267,6 +293,7 @@ class OpenDocuments:
         here = [self.current] if keep or self.current.unsaved else []
         self._documents = [*earlier, *later, *here, OpenDocument(model, self._schedule, self._pull, file)]
         self._at = len(self._documents) - 1
+        self.on_begin()
 
     def can_move(self, by: int) -> bool:
         """True if there is a document before (-1) or after (1) this one."""
@@ -277,9 +304,11 @@ class OpenDocuments:
         target = self._at + by
         if not self.can_move(by):
             return ""
+        self.on_leave()
         self.current.leave()
         opened = self._documents[max(self._at, target)].file.name
         self._at = target
+        self.on_begin()
         return tr("opening {name}", name=opened) if opened else tr("opening a new model")
 
 

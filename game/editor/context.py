@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
@@ -18,14 +18,10 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends
-from pinjoint.components.settings import HUBS, NO_DIAGRAMS, STATICS, Settings
+from pinjoint.components.settings import HUBS, STATICS, Settings
 from pinjoint.components.tags import Selected
-from pinjoint.components.view import Preview, Readout, View
-from pinjoint.documents import models
-from pinjoint.documents.chronicle import Happening
-from pinjoint.documents.format import missing_mods
-from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
+from pinjoint.components.view import Preview, View
+from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments
 from pinjoint.scripts.script import Script
 from pinjoint.systems.base import Mod
 from pinjoint.systems.collision.impacts import Impacts
@@ -294,16 +290,7 @@ class Context:
 
     def save(self, path: str | Path) -> None:
         """Write the model, with its present state, to a file."""
-        self.simulation.account_for_edits()
-        models.save(self.model, Path(path))
-
-    def save_as(self, path: str | Path) -> None:
-        """Write the model to a file that is its own from now on. Raises ModelError."""
-        path = Path(path)
-        self.save(path)
-        self.document.file, self.document.practice = ModelFile.at(path), False
-        self.document.saved = self.model.revision
-        self.notice = tr("Saved as '{name}'.", name=path.stem)
+        self.document.save(path)
 
     @property
     def model(self) -> Model:
@@ -335,38 +322,10 @@ class Context:
         """The impacts of the run so far, in columns."""
         return self.simulation.impacts
 
-    @property
-    def events(self) -> tuple[Happening, ...]:
-        """What happened in the run so far, in order of time: rods that yield, cables that go slack, collapse, rest."""
-        return self.document.chronicle.happenings
-
-    def open_here(self, source: Source | Model, file: ModelFile | None = None, *, keep: bool = False) -> None:
-        """Open another model, of its own file unless another is given. Raises ModelError.
-
-        A document with unsaved work, or any to `keep`, stays open, and undo goes back to it.
-        """
-        model = source if isinstance(source, Model) else models.load(source)
-        self.leave_gesture()
-        self.documents.add(model, file_of(source) if file is None else file, keep=keep)
-        self.view.all_diagrams = False
-        self._begin_document()
-
     def show_state(self) -> None:
         """Let the model show its static solution in statics and beside the boxes that it leads to, else its state."""
         solved = self.scenes.hub == STATICS and self.scene in (STATICS, *FORMS)
         self.model.show(self.document.statics if solved else None)
-
-    def _begin_document(self) -> None:
-        """Show the document that is open now, from the first frame on."""
-        self.show_state()
-        self._make_room()
-        self.view.fit(self.model)
-        if self.model.settings.diagrams != NO_DIAGRAMS:
-            self.view.all_diagrams, self.view.quantity = True, self.model.settings.diagrams
-        if self.model.rods.count:
-            self.view.rigid = bends(self.model)
-        self.notice = missing_mods(self.model) or self.notice
-        self._go_on()
 
     @property
     def fault(self) -> str:
@@ -416,7 +375,7 @@ class Context:
         self.document.history.end_run()
         self.document.history.begin_run(single=True)
         try:
-            self.get_ready()  # so that there is a checkpoint to step back to
+            self.document.get_ready()  # so that there is a checkpoint to step back to
             if steps >= 0:
                 with self.document.timeline.recording():
                     self.simulation.advance(steps)
@@ -436,12 +395,6 @@ class Context:
     def _act_in_scene(self) -> None:
         """Steps that are no frame's are taken as in the active scene; where time stands still, as in simulation."""
         self.simulation.act_in(self.scene if self.time_passes else "simulation")
-
-    def get_ready(self) -> None:
-        """Account for edits as if a frame had begun, so that what follows does not depend on when frames do."""
-        self.document.note_beginning()
-        if not self.simulation.halted and self.has_program(self.simulation):
-            self.simulation.advance(0)
 
     # --- editing -----------------------------------------------------------------------------------
 
@@ -487,25 +440,18 @@ class Context:
     def undo(self) -> str:
         """Take back the last edit or run, or the opening of the document; returns what it was, or ""."""
         history = self.document.history
-        return self._to_document(-1) if not history.can_undo else self._through_log(history.undo())
+        if history.can_undo:
+            return self._through_log(history.undo())
+        return self.documents.move(-1) if self.course is None else ""  # a lesson is left by its button
 
     def redo(self) -> str:
         """Repeat what was taken back; returns what it was, "" if there is nothing."""
         history = self.document.history
-        return self._to_document(1) if not history.can_redo else self._through_log(history.redo())
+        return self._through_log(history.redo()) if history.can_redo else self.documents.move(1)
 
     def _through_log(self, title: str) -> str:
         self._go_on()
         return title
-
-    def _to_document(self, by: int) -> str:
-        self.leave_gesture()
-        if self.course is not None and by < 0:  # a lesson is left by its button
-            return ""
-        opening = self.documents.move(by)
-        if opening:
-            self._begin_document()
-        return opening
 
     def leave_gesture(self) -> None:
         """End what is being drawn or dragged before something else begins."""
@@ -544,26 +490,8 @@ class Context:
         card = self.course.view if self.course is not None else None
         return stages + [(self._blank, view) for view in (self.footer, card) if view is not None]
 
-    @property
-    def pointer(self) -> Vector:
-        """The pixel where the pointer is; the middle of the view if it is outside."""
-        return self.view.pointer or self.view.camera.middle
-
-    def panels(self) -> Iterator[Readout]:
-        """The panels of mods beside the model."""
-        return (readout for panel in EXTENSIONS.panels for readout in panel(self))
-
     def exaggerate(self) -> None:
         """Let the automatic displacement scale suit the model, but not in the middle of a drag."""
         still = not self.time_passes or self.simulation.halted
         if self.gesture is None and self.document.exaggeration.review(still=still) and still:
             self.view.follow(self.model)
-
-    def _make_room(self) -> None:
-        """Fit the model beside panels that are large enough to cover it.
-
-        Called after actions, never because of time or frames, so that a recording is replayed in the same picture.
-        """
-        view = self.view
-        wanted = view.wanted or view.free_bodies or any(readout.is_large for readout in self.panels())
-        view.share(self.model, shares=view.legend and bool(wanted))

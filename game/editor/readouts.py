@@ -10,6 +10,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from pinjoint.components import written
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import FieldError
 from pinjoint.components.free_body import Force, on_joint, on_rod
 from pinjoint.components.handle import Handle
@@ -65,18 +66,20 @@ _ERRORS = {
 }
 
 
-def own_readouts(context: Context) -> Iterator[Readout]:
-    """The readouts that a person switched on, each with the action that switches it off."""
+def readouts(context: Context) -> Iterator[Readout]:
+    """The panels that a person switched on, each with the action that switches it off, then those of mods."""
     panels = {"free bodies": _equilibrium, "theory": _theory, "energy": _energy, "events": _events}
     shown = context.view.wanted | ({"free bodies"} if context.view.free_bodies else set())
     for name, read in panels.items():
         if name in shown:
             yield from (replace(readout, closes=f"toggle {name}") for readout in read(context))
+    for panel in EXTENSIONS.panels:
+        yield from panel(context)
 
 
 def _events(context: Context) -> Iterator[Readout]:
     """What happened in the run, the latest last."""
-    found = [(event.when, event.message.rstrip(".")) for event in context.events]
+    found = [(event.when, event.message.rstrip(".")) for event in context.document.chronicle.happenings]
     left_out = len(found) - MOST_EVENTS
     earlier = [(plural("one earlier event", "{count} earlier events", left_out), "")] if left_out > 0 else []
     rows = (*earlier, *found[-MOST_EVENTS:]) or ((tr("nothing yet"), ""),)

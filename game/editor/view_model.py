@@ -15,7 +15,7 @@ from pinjoint.components.tags import Hovered
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import DrawRod
-from pinjoint.editor.readouts import own_readouts
+from pinjoint.editor.readouts import readouts
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
@@ -78,7 +78,7 @@ def show(context: Context, elapsed: float) -> None:
 def _show_readouts(context: Context) -> None:
     """All panels, and the order in which they came."""
     view = context.view
-    view.readouts = (*own_readouts(context), *context.panels())
+    view.readouts = tuple(readouts(context))
     latest, since = max(view.since.values(), default=0), view.since
     view.since = {
         english(readout.title): since.get(english(readout.title), latest + number)
@@ -201,8 +201,8 @@ def _flashes(context: Context) -> NDArray[np.float64]:
 def _preview(context: Context) -> Preview | None:
     try:
         if context.gesture is None:
-            return _end_pointed_at(context, context.pointer) if context.scene in LIVE else None
-        return context.gesture.preview(context, context.pointer)
+            return _end_pointed_at(context, context.view.pixel) if context.scene in LIVE else None
+        return context.gesture.preview(context, context.view.pixel)
     except Refusal as error:
         context.gesture, context.notice = None, str(error)
         return None

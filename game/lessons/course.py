@@ -123,7 +123,7 @@ class Course:
             session.scenes.request("pause")
             session.scenes.apply(session)
         own = not session.document.practice and session.model.particles.count > 0
-        session.open_here(model, ModelFile(None, name), keep=own)
+        session.documents.open(model, ModelFile(None, name), keep=own)
         self._opened = name
         session.document.practice = True
         session.notice = ""

@@ -120,7 +120,7 @@ class Performance:
         if target is None:
             return
         view = self._screen.session.view
-        start = view.pointer or view.camera.middle
+        start = view.pixel
         began, share = time.monotonic(), 0.0
         while share < 1.0 and not self._skipping:
             share = min((time.monotonic() - began) / (REACH * self._pace), 1.0)

@@ -82,7 +82,7 @@ class PygameInput(System):
             self._handle(event, frame)
         dropped = [event.file for event in events if event.type == pygame.DROPFILE]
         if dropped:
-            frame.pressed.append((FILES + "\n".join(dropped), session.pointer))
+            frame.pressed.append((FILES + "\n".join(dropped), session.view.pixel))
 
     def _handle(self, event: pygame.event.Event, frame: Any) -> None:
         view, ratio = frame.session.view, self.density
@@ -91,7 +91,7 @@ class PygameInput(System):
         elif event.type == pygame.KEYDOWN:
             self._press(event, frame)
         elif event.type == pygame.TEXTINPUT:
-            frame.pressed.append((TEXT + event.text, frame.session.pointer))
+            frame.pressed.append((TEXT + event.text, frame.session.view.pixel))
         elif event.type == pygame.KEYUP:
             self._held.discard(event.key)
         elif event.type == pygame.MOUSEMOTION:
@@ -112,7 +112,7 @@ class PygameInput(System):
                 frame.pressed.append(("right click", view.pointer))
         elif event.type == pygame.MOUSEWHEEL and event.y:
             key = "wheel up" if event.y > 0 else "wheel down"
-            frame.pressed += [(key, view.pointer or view.camera.middle)] * abs(event.y)
+            frame.pressed += [(key, view.pixel)] * abs(event.y)
         elif event.type == pygame.WINDOWLEAVE:
             view.pointer = None
         elif event.type == pygame.WINDOWFOCUSLOST:  # no event tells of keys that are released elsewhere
@@ -127,7 +127,7 @@ class PygameInput(System):
         scene = frame.session.scene if frame.session.view.menu is None else MENU
         found = ACTIONS.at(scene, key)
         if key and (not repeated or (found is not None and found[0].repeats)):
-            frame.pressed.append((key, frame.session.pointer))
+            frame.pressed.append((key, frame.session.view.pixel))
 
     def _drag(self, event: pygame.event.Event, frame: Any, ratio: float) -> None:
         _, middle, right = event.buttons
@@ -157,7 +157,7 @@ class PygameInput(System):
         dragging, self._dragging = self._dragging, False
         if grip is None:
             return
-        key, pointer = "drop" if dragging else grip[0], frame.session.pointer
+        key, pointer = "drop" if dragging else grip[0], frame.session.view.pixel
         now, before = time.monotonic(), self._clicked
         self._clicked = (now, pointer) if key == "click" else None
         reach = 2.0 * CLICK_REACH * frame.session.view.pixel_ratio

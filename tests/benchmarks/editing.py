@@ -122,7 +122,7 @@ def _drag(hand: Hand) -> None:
 
 
 def _pull(hand: Hand) -> None:
-    x, y = hand.session.pointer
+    x, y = hand.session.view.pixel
     hand.press("drag to", (x + 4.0, y + 3.0))
 
 
@@ -222,7 +222,7 @@ def reactions(*, quick: bool) -> Iterator[Row]:
     """
     rods = 2_000 if quick else 10_000
     with library.data_in(), closing(Hand(rods)) as hand:
-        hand.session.save_as(library.data_folder() / "lattice.json")
+        hand.session.document.save_as(library.data_folder() / "lattice.json")
         for what, act, times in SESSION:
             hand.wait()
             taken = [_milliseconds(hand, act) for _ in range(times)]

@@ -12,7 +12,7 @@ from tests.benchmarks.editing import ANNOUNCED, SESSION, Hand
 @pytest.mark.usefixtures("data")
 def test_every_action_is_seen(tmp_path: Path) -> None:
     with closing(Hand(200)) as hand:
-        hand.session.save_as(tmp_path / "lattice.json")
+        hand.session.document.save_as(tmp_path / "lattice.json")
         rods = hand.session.rods.count
         for what, act, times in SESSION:
             seen = False

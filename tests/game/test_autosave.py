@@ -161,9 +161,9 @@ def test_closing_keeps_every_model_with_unsaved_work_and_no_other(data: Path) ->
     session.rods["AB"].stiffness = 5.0
     kept(keeper, session)
     for stiffness in (6.0, 7.0):
-        session.open_here("isostatic")
+        session.documents.open("isostatic")
         session.rods["AB"].stiffness = stiffness
-    session.open_here("tower")
+    session.documents.open("tower")
     session.run(steps=3)
     keeper.close(session.documents)
     later = Autosave()
@@ -188,7 +188,7 @@ def test_what_is_saved_needs_no_recovery_file(data: Path) -> None:
     assert not list((data / "autosave").glob("*.json"))
     session.rods["AB"].stiffness = 5.0
     kept(keeper, session)
-    session.save_as(data / "a.json")
+    session.document.save_as(data / "a.json")
     gone(session, data)
     keeper.close(session.documents)
     assert not (data / "models").exists()
@@ -256,7 +256,7 @@ def test_a_model_that_no_file_can_hold_is_told_of_and_keeps_the_others_from_noth
     said = passing(keeper, session)
     assert "a crash would lose it" in said
     assert "nan" in said
-    session.open_here("isostatic")
+    session.documents.open("isostatic")
     session.rods["AB"].stiffness = 7.0
     passing(keeper, session)
     (written,) = (data / "autosave").glob("*.json")
@@ -280,8 +280,8 @@ def test_a_model_that_was_saved_and_left_at_once_leaves_no_recovery_file(data: P
     session = Session.open(triangle(), [keeper])
     session.rods["AB"].stiffness = 5.0
     kept(keeper, session)
-    session.save_as(data / "a.json")
-    session.open_here("tower")
+    session.document.save_as(data / "a.json")
+    session.documents.open("tower")
     keeper.close(session.documents)
     assert list((data / "autosave").iterdir()) == []
 

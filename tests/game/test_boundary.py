@@ -43,7 +43,7 @@ def shown_to(
         said.append(app.session.notice if look is None else look())
         key = next(pending, None)
         if key:
-            frame.pressed.append((key, frame.session.pointer))
+            frame.pressed.append((key, frame.session.view.pixel))
         elif key is None:
             app.input.close()
 

@@ -26,7 +26,7 @@ def watched(name: str, seconds: float, start: str = "space") -> Session:
 
 
 def kinds(session: Session) -> list[str]:
-    return [event.kind for event in session.events]
+    return [event.kind for event in session.document.chronicle.happenings]
 
 
 # --- instants --------------------------------------------------------------------------------------------
@@ -37,7 +37,7 @@ def test_a_rod_yields_at_the_instant_and_load_at_which_it_reaches_its_strength()
     session = Session.open("hyperstatic_yield")
     assert session.rods["CD"].yielded_at is None
     session.run(until="rest")
-    [yields, rests] = session.events
+    [yields, rests] = session.document.chronicle.happenings
     assert (yields.kind, yields.elements, rests.kind) == ("yield", ("CD",), "rest")
     assert yields.time == session.rods["CD"].yielded_at
     assert yields.load_factor == pytest.approx(yields.time / 0.5, rel=1e-12)
@@ -45,7 +45,7 @@ def test_a_rod_yields_at_the_instant_and_load_at_which_it_reaches_its_strength()
     assert yields.when == "0.4620 s, 92.4 % of the load"
     again = Session.open("hyperstatic_yield")
     again.run(time=yields.time * (1.0 - 1e-9))
-    assert again.events == ()
+    assert again.document.chronicle.happenings == ()
     assert abs(again.rods["CD"].axial_force) == pytest.approx(215.0, rel=1e-6)
     again.run(time=yields.time * 3e-9)
     assert kinds(again) == ["yield"]
@@ -55,11 +55,15 @@ def test_the_instant_does_not_depend_on_frames_or_the_integrator() -> None:
     script = Session.open("hyperstatic_yield")
     script.run(until="rest")
     seen = watched("hyperstatic_yield", 20.0)
-    assert [event.time for event in seen.events] == [event.time for event in script.events]
+    assert [event.time for event in seen.document.chronicle.happenings] == [
+        event.time for event in script.document.chronicle.happenings
+    ]
     fixed = Session.open("hyperstatic_yield")
     fixed.settings.integrator = "velocity_verlet"
     fixed.run(until="rest")
-    assert fixed.events[0].time == pytest.approx(script.events[0].time, abs=3 * fixed.model.clock.step_size)
+    assert fixed.document.chronicle.happenings[0].time == pytest.approx(
+        script.document.chronicle.happenings[0].time, abs=3 * fixed.model.clock.step_size
+    )
 
 
 def test_what_is_taken_back_did_not_happen() -> None:
@@ -67,11 +71,11 @@ def test_what_is_taken_back_did_not_happen() -> None:
     session.run(time=0.5)
     assert kinds(session) == ["yield"]
     session.press("ctrl+z")
-    assert session.events == ()
+    assert session.document.chronicle.happenings == ()
     session.press("ctrl+y")
     assert kinds(session) == ["yield"]
     session.restart()
-    assert session.events == ()
+    assert session.document.chronicle.happenings == ()
 
 
 # --- by looking ------------------------------------------------------------------------------------------
@@ -89,14 +93,14 @@ def test_what_is_taken_back_did_not_happen() -> None:
 def test_what_happens_is_noted(name: str, seconds: float, found: list[str]) -> None:
     session = watched(name, seconds)
     assert kinds(session) == found
-    assert all(event.message.endswith(".") for event in session.events)
+    assert all(event.message.endswith(".") for event in session.document.chronicle.happenings)
     session.restart()
-    assert session.events == ()
+    assert session.document.chronicle.happenings == ()
 
 
 def test_a_collapse_begins_when_the_rod_that_lets_go_yields_and_a_panel_lists_it() -> None:
     session = watched("isostatic_collapse", 5.0)
-    yields, collapse = session.events
+    yields, collapse = session.document.chronicle.happenings
     assert collapse.time == yields.time
     assert collapse.load_factor == pytest.approx(0.8686, abs=2e-3), (
         "that of plastic theory, and a little inertia"
@@ -203,7 +207,7 @@ def test_a_window_follows_nobody_who_looks_elsewhere_and_nothing_too_far() -> No
 def test_many_rods_that_yield_at_once_are_one_event() -> None:
     session = Session.open("tower")
     session.model.writable("rods.yielded_at")[:5] = 0.0
-    [event] = session.events
+    [event] = session.document.chronicle.happenings
     assert event.message.startswith("Rods ")
     assert "2 more yield." in event.message
 
@@ -219,18 +223,18 @@ def test_a_run_that_diverges_says_so() -> None:
 def test_impacts_are_told_first_one_by_one_then_counted() -> None:
     session = Session.open("collision_vi")
     session.run(time=0.05)
-    assert session.events == ()
+    assert session.document.chronicle.happenings == ()
     session.run(time=0.1)
-    [event] = session.events
+    [event] = session.document.chronicle.happenings
     assert (event.kind, event.elements) == ("impact", ("particle 1", "particle 2"))
     assert event.message == "Impact of particle 1 and particle 2."
     assert event.time == session.impacts.time[0]
     session.restart()
-    assert session.events == ()
+    assert session.document.chronicle.happenings == ()
 
     billiards = Session.open("billiards_break")
     billiards.run(time=0.5)
-    *first, further = billiards.events
+    *first, further = billiards.document.chronicle.happenings
     count = len(billiards.impacts)
     assert [event.kind for event in first] == 3 * ["impact"]
     told = int((billiards.impacts.time < first[-1].time * (1.0 + 1e-9)).sum())

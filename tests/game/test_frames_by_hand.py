@@ -53,7 +53,7 @@ def test_the_button_says_which_diagram_is_on() -> None:
 
 def test_the_largest_moment_of_a_member() -> None:
     session = Session.open(portal_at_rest())
-    session.get_ready()
+    session.document.get_ready()
     model = session.model
     rows = dict(told(model, model.rods["BC"], forces_known=True))
     assert rows["largest moment"] == "38.53 kN·m at 248.7 cm"
@@ -88,7 +88,7 @@ def test_a_bar_between_hinges_bends_under_what_lies_on_it() -> None:
     session.view.fit(session.model)
     session.press("i")
     session.press("i")
-    session.get_ready()
+    session.document.get_ready()
     session.update_view()
     assert session.view.quantity == "M"
     assert "6.000 kN·m" in compose(session.model, session.view, load_theme("light")).texts
@@ -124,7 +124,7 @@ def test_what_is_left_over_turns_a_joint() -> None:
 def test_free_bodies_show_shears_and_moments_with_sums() -> None:
     session = Session.open(portal_at_rest())
     session.resize(1280, 800)
-    session.get_ready()
+    session.document.get_ready()
     session.view.free_bodies = True
     session.select(session.particles["B"], session.rods["BC"])
     session.update_view()
@@ -143,7 +143,7 @@ def test_forces_apart_are_those_of_the_true_shape() -> None:
     session.resize(1280, 800)
     session.settings.displacement_scale = 40.0
     session.view.fit(session.model)
-    session.get_ready()
+    session.document.get_ready()
     session.view.free_bodies = True
     session.update_view()
     texts = compose(session.model, session.view, load_theme("light")).texts

@@ -27,7 +27,7 @@ def app() -> Iterator[App]:
 
 
 def opened(app: App, script: Script) -> Performance:
-    app.session.open_here(script.source)
+    app.session.documents.open(script.source)
     return Performance(app, script, pace=0.0)
 
 

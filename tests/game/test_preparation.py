@@ -196,7 +196,7 @@ def test_what_an_edit_will_bring_is_compiled_before(
 def test_what_is_needed_comes_before_what_may_be(app: App, compiler: Compiler) -> None:
     end(compiler.processes[0])
     until(app, lambda: len(compiler.processes) > 1)  # for later
-    app.session.open_here("ball_on_truss")
+    app.session.documents.open("ball_on_truss")
     until(app, lambda: len(compiler.processes) > 2)
     program, driven = compiler.processes[2].jobs
     assert compiler.processes[1].returncode == -15
@@ -205,7 +205,7 @@ def test_what_is_needed_comes_before_what_may_be(app: App, compiler: Compiler) -
 
 
 def test_free_particles_need_piles_once_something_pulls(app: App) -> None:
-    app.session.open_here(models.load("collision_i"))
+    app.session.documents.open(models.load("collision_i"))
     assert _jobs_of(app.session.simulation) == [("fly",), ("open_horizon",)]
     app.session.environment.acceleration = (0.0, -9.81)
     assert _jobs_of(app.session.simulation) == [("fly",), ("open_horizon",), ("take_steps",)]

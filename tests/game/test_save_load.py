@@ -349,7 +349,7 @@ def test_unsaved_work_is_there_again_after_undo(session: Session) -> None:
     session.rods["AB"].stiffness = 5.0
     session.run(steps=100)
     model, time = session.model, session.time
-    session.open_here("isostatic")
+    session.documents.open("isostatic")
     session.rods["AB"].stiffness = 7.0
     assert session.undo()
     assert session.undo()
@@ -369,7 +369,7 @@ def test_opening_another_model_forgets_what_could_be_done_again_here(session: Se
     session.rods["AB"].stiffness = 5.0
     session.rods["BC"].stiffness = 6.0
     session.undo()
-    session.open_here("tower")
+    session.documents.open("tower")
     session.undo()
     assert session.rods["AB"].stiffness == 5.0
     session.redo()  # leads to the tower, not to what was undone before it was opened
@@ -379,11 +379,11 @@ def test_opening_another_model_forgets_what_could_be_done_again_here(session: Se
 
 def test_work_that_was_gone_back_from_is_kept_when_another_model_is_opened(session: Session) -> None:
     session.rods["AB"].stiffness = 5.0
-    session.open_here("hyperstatic")
+    session.documents.open("hyperstatic")
     session.rods["AC"].stiffness = 6.0
     for _ in range(2):
         session.undo()
-    session.open_here("tower")
+    session.documents.open("tower")
     seen = [document.model for document in session.documents]
     assert [len(document.model.rods) for document in session.documents][:2] == [6, 3]
     assert seen[0].rods["AC"].stiffness == 6.0
@@ -392,8 +392,8 @@ def test_work_that_was_gone_back_from_is_kept_when_another_model_is_opened(sessi
 
 def test_saved_work_is_not_kept_twice(session: Session) -> None:
     saved_as(session, "a")
-    session.open_here("isostatic")
-    session.open_here("tower")
+    session.documents.open("isostatic")
+    session.documents.open("tower")
     assert len(session.documents) == 1
 
 
@@ -401,14 +401,14 @@ def test_a_typed_velocity_is_unsaved_work() -> None:
     session = Session.open("collision_iii")
     session.particles[0].velocity = (1.0, 2.0)
     assert session.document.unsaved
-    session.open_here("tower")
+    session.documents.open("tower")
     session.undo()
     assert session.particles[0].velocity == (1.0, 2.0)
 
 
 def test_examples_that_were_only_run_are_not_kept(session: Session) -> None:
     for name in ("isostatic", "tower", "pendulum"):
-        session.open_here(name)
+        session.documents.open(name)
         session.run(steps=5)
     assert len(session.documents) == 1
     assert session.undo()

@@ -368,7 +368,7 @@ def test_a_key_that_acts_in_pause_only_says_so_while_time_passes() -> None:
 def test_a_model_opens_with_the_diagrams_that_it_names() -> None:
     session = Session.open("portal")
     assert (session.view.all_diagrams, session.view.quantity) == (True, "M")
-    session.open_here("isostatic")
+    session.documents.open("isostatic")
     assert not session.view.all_diagrams
-    session.open_here("gerber_beam")
+    session.documents.open("gerber_beam")
     assert (session.view.all_diagrams, session.view.quantity) == (True, "M")

@@ -92,7 +92,7 @@ def test_files_are_the_same_in_both_languages(name, tmp_path):
         session = Session.open(name)
         session.run(time=0.05)
         session.act("new slider")
-        session.save_as(tmp_path / file)
+        session.document.save_as(tmp_path / file)
         return (tmp_path / file).read_bytes()
 
     first = saved("a.json")

@@ -174,7 +174,7 @@ def test_what_no_script_can_mean_is_refused() -> None:
     with pytest.raises(ValueError, match="Load factors are '1'; give at least one finite number"):
         session.settle("1")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="no 'simulated' among the comparisons; did you mean 'simulation'"):
-        session.compare().worst("simulated")
+        session.document.assessment.comparison().worst("simulated")
     with pytest.raises(ValueError, match="5 is not a model; give a file"):
         Session.open(5)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="rod AB: ends x is 'A'; it must be the row of an element"):

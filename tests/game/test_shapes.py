@@ -103,7 +103,7 @@ def test_a_shape_stays_while_time_passes_and_goes_away_on_an_edit() -> None:
 def test_each_model_has_its_own() -> None:
     session = session_of("isostatic")
     session.press("b")
-    session.open_here("pendulum")
+    session.documents.open("pendulum")
     assert shown(session) == ""
 
 

@@ -52,7 +52,7 @@ def preview_of(name: str) -> dict[str, Any]:
     columns: tuple[str, ...] = ("particles.displacement", "particles.velocity", "rods.axial_force")
     if bends(session.model):
         columns = *columns, "particles.rotation", "rods.end_moment"
-    session.get_ready()
+    session.document.get_ready()
     state = {column: _rounded(session.model.column(column)) for column in columns}
     return {column: values for column, values in state.items() if np.any(values)}
 

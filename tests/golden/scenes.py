@@ -233,7 +233,7 @@ def _moments(window: Window) -> Session:
     """A portal at rest with its bending moments."""
     session = opened(window, portal_at_rest())
     session.settings.displacement_scale = 20.0
-    session.get_ready()
+    session.document.get_ready()
     session.press("i")
     session.press("i")
     return session
@@ -249,7 +249,7 @@ def _shears(window: Window) -> Session:
 def _members_apart(window: Window) -> Session:
     """Members and joints of a portal at rest, apart, with the equilibrium of its beam."""
     session = opened(window, portal_at_rest())
-    session.get_ready()
+    session.document.get_ready()
     session.press("x")
     session.select(session.rods["BC"])
     return session

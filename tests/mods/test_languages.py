@@ -6,6 +6,7 @@ import pytest
 
 from pinjoint import mods
 from pinjoint.components.language import spoken, tr
+from pinjoint.editor.readouts import readouts
 from pinjoint.session import Session
 from tests.catalogues import MODS
 
@@ -15,10 +16,10 @@ WIND = MODS / "wind"
 def test_what_a_mod_says_is_translated_while_it_is_loaded(unloaded):
     session = Session.open("isostatic", mods=[WIND])
     with spoken("pt"):
-        (panel,) = (readout for readout in session.panels() if readout.title == "Vento")
+        (panel,) = (readout for readout in readouts(session) if readout.title == "Vento")
         assert panel.rows == (("velocidade", "0 m/s"),)
         session.environment.wind_velocity = (0.5, 0.0)  # type: ignore[attr-defined]
-        (panel,) = (readout for readout in session.panels() if readout.title == "Vento")
+        (panel,) = (readout for readout in readouts(session) if readout.title == "Vento")
         assert panel.rows == (("velocidade", "0,5 m/s"),)
         assert tr("wind velocity") == "velocidade do vento"
         mods.unload([mod for mod in mods.MODS if mod.name == "wind"])

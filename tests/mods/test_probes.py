@@ -172,7 +172,7 @@ def test_a_plot_of_nothing_or_of_one_value_is_drawn() -> None:
 
 def test_members_offer_their_moments_and_joints_their_rotation() -> None:
     session = Session.open(portal_at_rest())
-    session.get_ready()
+    session.document.get_ready()
     session.select(session.rods["BC"])
     session.press("o")
     assert [read.title for read in probes_of(session).all[0].read] == ["bending moment start of rod BC (kN·m)"]

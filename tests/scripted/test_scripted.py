@@ -207,7 +207,7 @@ def test_a_key_acts_where_the_pointer_was(tmp_path: Path) -> None:
         Recorder(session, file, "isostatic")
         session.update_view()
         session.view.pointer = 100.0, 100.0
-        session.press("l", session.pointer)
+        session.press("l", session.view.pixel)
     replayed = replayed_from(path)
     assert replayed.view.pointer == session.view.pointer
 

@@ -35,7 +35,7 @@ def beam(start: dict[str, Any], end: dict[str, Any], turns: tuple[float, float],
     for particle, turn in zip(source["particles"], turns, strict=True):
         particle["rotation"] = turn
     session = Session(parse(source))
-    session.get_ready()
+    session.document.get_ready()
     return session.model
 
 
@@ -98,7 +98,7 @@ def test_no_moment_along_a_rod_is_larger_than_the_largest(name: str) -> None:
 def test_moments_change_with_the_shear() -> None:
     session = Session.open(portal_at_rest())
     model, rows = session.model, np.arange(3)
-    session.get_ready()
+    session.document.get_ready()
     shares = np.linspace(0.0, 1.0, 7)
     slope = values(derivative(inner_forces(model, rows, MOMENT)), shares) / model.rods.length[:, None]
     shear = values(inner_forces(model, rows, SHEAR), shares)

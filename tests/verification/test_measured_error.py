@@ -8,7 +8,7 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
-from pinjoint.editor.readouts import own_readouts
+from pinjoint.editor.readouts import readouts
 from pinjoint.systems.run.measured_error import FINEST_TOLERANCE
 from tests.benchmarks.problems import Problem, tightly, transient, under_damped, yielding_step
 from tests.properties.limits import within
@@ -210,7 +210,7 @@ def test_the_error_is_in_the_report(answer: Any, capsys: pytest.CaptureFixture[s
 def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
     session = _run(under_damped(), integrator="velocity_verlet", time_step=0.01)
     session.view.wanted = frozenset({"energy"})
-    (readout,) = own_readouts(session)
+    (readout,) = readouts(session)
     assert readout.rows[-3] == (
         "error of displacements",
         "0.11 % of the largest",
@@ -218,7 +218,7 @@ def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
     assert [title for title, _ in readout.rows[-2:]] == ["error of velocities", "error of axial forces"]
     session.press("space")
     assert session.busy
-    (readout,) = own_readouts(session)
+    (readout,) = readouts(session)
     assert readout.rows[-1][0] == "numerical imbalance"
 
 

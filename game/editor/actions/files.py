@@ -34,7 +34,7 @@ def _save_again(context: Context, pixel: Vector) -> None:
             file=file.name,
         )
     try:
-        context.save_as(file.path)
+        context.notice = context.document.save_as(file.path)
     except ModelError as error:
         context.notice = str(error)
 
@@ -48,5 +48,5 @@ def _new(context: Context, pixel: Vector) -> None:
     """An empty model, whose structure is drawn in statics."""
     model = Model()
     model.settings.opens_in = STATICS
-    context.open_here(model)
+    context.documents.open(model)
     context.scenes.request_from_pause(STATICS)

@@ -185,7 +185,7 @@ class Save(FileScene):
                 )
                 return
             path.parent.mkdir(parents=True, exist_ok=True)
-            context.save_as(path)
+            context.notice = context.document.save_as(path)
         except OSError as error:
             self.form.message = tr(
                 "The folder {folder} cannot be made: {reason}. Set the variable {variable} to a folder where you may write,"

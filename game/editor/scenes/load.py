@@ -106,13 +106,13 @@ class Load(FileScene):
             if isinstance(source, Script) and source.task_count:
                 context.lesson = source  # it opens its models itself
             elif isinstance(source, Script):
-                context.open_here(source.source)
+                context.documents.open(source.source)
                 context.lesson = source
             elif context.autosave is not None and source in context.autosave.left():
-                context.open_here(source, ModelFile(None, recovered_name(source)))
+                context.documents.open(source, ModelFile(None, recovered_name(source)))
                 context.autosave.take_over(source, context.document)
             else:
-                context.open_here(source)
+                context.documents.open(source)
         except models.ModelError as error:
             self.form.message = str(error)
         else:

@@ -142,7 +142,9 @@ def test_a_person_settles_and_takes_back(portal: Path) -> None:
     turned = session.particles["B"].rotation
     assert turned == pytest.approx(-0.009309906, rel=1e-6)
     assert session.rods["AB"].bending_moment[0] == pytest.approx(-54.32256, rel=1e-6)
-    rows = {(row.name, row.quantity, row.component): row for row in session.compare().rows}
+    rows = {
+        (row.name, row.quantity, row.component): row for row in session.document.assessment.comparison().rows
+    }
     assert rows["B", "rotation", ""].simulation == turned
     assert rows["AB", "bending_moment", "start"].simulation_error < 1e-12
     session.undo()

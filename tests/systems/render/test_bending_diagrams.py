@@ -40,7 +40,7 @@ def shown(
         setattr(session.settings, name, value)
     session.resize(width, height)
     session.view.fit(session.model)
-    session.get_ready()
+    session.document.get_ready()
     session.view.all_diagrams, session.view.quantity = True, quantity
     return compose(session.model, session.view, LIGHT), session
 
@@ -166,7 +166,7 @@ def test_one_scale_for_all_which_is_steady() -> None:
     session = Session.open(portal_at_rest())
     session.resize(1000, 720)
     session.view.fit(session.model)
-    session.get_ready()
+    session.document.get_ready()
     session.view.all_diagrams, session.view.quantity = True, MOMENT
     placed: dict[tuple[str, int], int] = {}
     before = areas(compose(session.model, session.view, LIGHT, placed), session, "BC")
@@ -251,7 +251,7 @@ def test_unknown_forces_are_not_drawn() -> None:
 @pytest.mark.parametrize("quantity", DIAGRAMS)
 def test_a_truss_shows_axial_forces_whatever_is_chosen(quantity: str) -> None:
     session = Session.open("isostatic")
-    session.get_ready()
+    session.document.get_ready()
     session.view.all_diagrams = True
     expected = compose(session.model, session.view, LIGHT)
     session.view.quantity = quantity

@@ -211,7 +211,7 @@ def test_shapes_turn_joints() -> None:
 
 def test_reactions_turn_in_diagrams() -> None:
     session = opened(portal_at_rest())
-    session.get_ready()
+    session.document.get_ready()
     session.view.all_diagrams = True
     picture = drawn(session)
     assert "28.12 kN·m" in picture.texts
@@ -227,7 +227,7 @@ def test_extreme_states_are_drawn_or_left_out(size: float, quantity: str) -> Non
     """Nothing raises, whatever a run that diverges has left."""
     for column in ("particles.displacement", "particles.rotation", "rods.end_moment", "rods.axial_force"):
         session = opened(portal_at_rest())
-        session.get_ready()
+        session.document.get_ready()
         session.view.all_diagrams, session.view.quantity = True, quantity
         with np.errstate(all="ignore"):
             session.model.writable(column)[1] = size
