@@ -18,6 +18,7 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import PAUSE, Environment
 from pinjoint.components.table import Table
+from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.components.view import View
 from pinjoint.components.wording import missing, quoted
 from pinjoint.documents import models
@@ -35,6 +36,7 @@ from pinjoint.systems.schedule import Schedule
 if TYPE_CHECKING:  # they import scipy
     from pinjoint.systems.statics.buckling import Buckling
     from pinjoint.systems.statics.path import Curve
+    from pinjoint.systems.statics.settle import Settlement
 
 
 class Still(Scene):
@@ -193,10 +195,17 @@ class Headless(Context):
         self.schedule.run(Phase.EVENTS, frame, headless=True)
 
     def load_path(
-        self, factor: float = 1.0, *, until: str | None = None, points: int = 500, branch: int = 0
+        self,
+        factor: float = 1.0,
+        *,
+        until: str | None = None,
+        points: int = 500,
+        branch: int = 0,
+        theory: str = EXACT,
     ) -> Curve:
         """The load–displacement curve, through limit points, up to a load factor, or "B.y=-2.5" or "B.rotation=1".
 
+        theory: "exact", or "first-order" with straight lines between yields, up to the collapse load.
         branch: number of the bifurcation from which on it follows the other branch, along the mode; negative: against it.
 
         Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, rotation (k, particles) in
@@ -205,7 +214,29 @@ class Headless(Context):
         """
         from pinjoint.systems.statics.path import Curve, Goal
 
-        return Curve.of(self.model, Goal.of(self.model, factor, until), points=points, branch=branch)
+        goal = Goal.of(self.model, factor, until)
+        return Curve.of(self.model, goal, points=points, branch=branch, theory=theory)
+
+    def statics(self, theory: str = FIRST_ORDER, load_factors: Sequence[float] | float = (1.0,)) -> Settlement:
+        """The equilibria at these load factors from the undeformed beginning, by "first-order" or "exact" theory.
+
+        Changes nothing. Each of its `states`, of which `final` is the last, has load_factor, status and columns, in order
+        of rows, as `columns["rods.bending_moment"]`: displacement, reaction (particles, 2), rotation, reaction_moment
+        (particles,), axial_force, strain, plastic_strain, yielding (rods,), and in `diagrams` shear, bending_moment,
+        end_axial_force, end_rotation (rods, 2) and largest_moment, with its place; m, rad, kN, kN·m. Its `events` are
+        yields, cables that slacken, collapses with their motion; status and message are those of the end. Raises ValueError.
+
+        >>> from pinjoint import Session
+        >>> s = Session.open("three_bar_plastic")
+        >>> s.statics(load_factors=[1.0, 0.0]).final.axial_force.round(2).tolist()
+        [28.7, -40.59, 28.7]
+        """
+        from pinjoint.systems.statics.settle import settle
+        from pinjoint.systems.statics.state import Start
+
+        begun, name = self.document.undeformed, "rods.plastic_strain"
+        strain = begun.column(self.model, name) if begun is not None else self.rods.plastic_strain
+        return settle(self.model, load_factors, theory, Start.undeformed(self.model, strain.copy()))
 
     def buckling(self, modes: int = 5) -> Buckling:
         """Critical load factors by linear buckling, ascending, with their modes; changes nothing.

@@ -20,6 +20,7 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends
 from pinjoint.components.settings import AUTOMATIC
 from pinjoint.components.table import fields_of
+from pinjoint.components.theory import EXACT
 from pinjoint.mods.mod import ModError, check_mods, heeding_mods
 from pinjoint.paths import ENERGIES
 from pinjoint.systems.base import DEFAULT_LIMIT, StopReason
@@ -141,13 +142,14 @@ class Analysis:
     """The computation of a model's equilibria, of its state at certain times, or of its state at rest.
 
     load_factors: settle at each in turn (statics). times: run through these, in s, ascending; None for both:
-    run until at rest, at most `limit` s of simulated time. measures_error: even if that takes long.
+    run until at rest, at most `limit` s of simulated time. measures_error: even if that takes long. theory: of statics.
     """
 
     load_factors: tuple[float, ...] | None = None
     times: tuple[float, ...] | None = None
     limit: float = DEFAULT_LIMIT
     measures_error: bool = False
+    theory: str = EXACT
 
     def run(
         self, simulation: Simulation, name: str, reported: list[State] | None = None, read: Read = by_element
@@ -191,13 +193,14 @@ class Analysis:
         check_mods()
         left_out = left_out_of_statics(model)
         started = time.perf_counter()
-        settlement = settle(model, self.load_factors or (1.0,))
+        settlement = settle(model, self.load_factors or (1.0,), self.theory)
         seconds = time.perf_counter() - started
         states = [read(model, static_facts(model, found)) for found in settlement.states]
         status, note = settlement.beside(left_out)
         check_mods(time=model.clock.time)
         return _result(model, name, status, states) | {
             "message": joined([settlement.message, note]),
+            "theory": self.theory,
             "left_out": left_out,
             "wall_seconds": seconds,
             "events": [event.record(model) for event in settlement.events],

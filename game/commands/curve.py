@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pinjoint.commands.arguments import Parser, UsageError, count, finite
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, model_of
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, model_of
 from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import joined, marked, plural, tr
@@ -55,6 +55,7 @@ def command(words: Sequence[str]) -> int:
     parser.add_argument(
         "--points", type=count, default=500, metavar="N", help=tr("compute at most N equilibria; default 500")
     )
+    add_theory(parser)
     add_output(parser, default="csv")
     options = parser.parse_args(words)
     model = model_of(options)
@@ -62,7 +63,8 @@ def command(words: Sequence[str]) -> int:
 
     try:
         end = Goal.of(model, options.factor, options.until)
-        found = Curve.of(model, end, points=options.points, branch=options.branch)
+        wanted = {name: getattr(options, name) for name in ("points", "branch", "theory")}
+        found = Curve.of(model, end, **wanted)
     except ValueError as error:
         raise UsageError(str(error)) from None
     laws = left_out_of_statics(model)

@@ -15,6 +15,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.settings import INTEGRATORS
+from pinjoint.components.theory import EXACT, THEORIES
 from pinjoint.documents import models
 from pinjoint.documents.format import missing_mods
 from pinjoint.paths import apply_override
@@ -99,6 +100,20 @@ def _prepare(model: Model, options: argparse.Namespace, *progress: Progress) -> 
         apply_override(model, override)
 
 
+def add_theory(parser: argparse.ArgumentParser, default: str | None = EXACT) -> None:
+    """Add the option of the theory of statics; default: None where it says nothing by itself."""
+    parser.add_argument(
+        "--theory",
+        choices=THEORIES,
+        default=default,
+        help=tr(
+            "the theory of statics: first-order, about the original shape, or exact, about the deformed one; default"
+            " {default}",
+            default=default or EXACT,
+        ),
+    )
+
+
 def add_analysis(parser: argparse.ArgumentParser) -> None:
     """Add the options of the analysis: equilibria, the state at certain times, or the state at rest."""
     how = parser.add_mutually_exclusive_group()
@@ -112,6 +127,7 @@ def add_analysis(parser: argparse.ArgumentParser) -> None:
         metavar="F1,F2,…",
         help=tr("with --static: find the equilibrium at each of these load factors, one after the other"),
     )
+    add_theory(parser, None)
     parser.add_argument(
         "--limit",
         type=positive,
@@ -124,10 +140,12 @@ def add_analysis(parser: argparse.ArgumentParser) -> None:
 def analysis_of(options: argparse.Namespace) -> Analysis:
     """The analysis of `add_analysis`. Raises UsageError."""
     factors = numbers("--load-factors", options.load_factors) if options.load_factors is not None else None
-    if factors is not None and not options.static:
-        raise UsageError("--load-factors works only together with --static; add it.")
+    for option, given in (("--load-factors", factors), ("--theory", options.theory)):
+        if given is not None and not options.static:
+            raise UsageError("{option} works only together with --static; add it.", option=option)
     return Analysis(
         load_factors=(factors or (1.0,)) if options.static else None,
         times=times(options.at) if options.at is not None else None,
         limit=options.limit,
+        theory=options.theory or EXACT,
     )

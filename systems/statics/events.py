@@ -45,8 +45,11 @@ class Event:
 
 
 class NoEquilibrium(Exception):
-    """No further equilibrium; status: "mechanism", "collapse" or "limit reached"."""
+    """No further equilibrium; status: "mechanism", "collapse" or "limit reached".
 
-    def __init__(self, status: str, message: str) -> None:
+    motion: what nothing resists in first-order theory, (n, …), the largest 1; None for other reasons.
+    """
+
+    def __init__(self, status: str, message: str, motion: NDArray[np.float64] | None = None) -> None:
         super().__init__(message)
-        self.status = status
+        self.status, self.motion = status, motion

@@ -166,8 +166,10 @@ class Path:
 
     def start(self, displacement: Array, plastic_strain: Array) -> Point:
         """The point at t = 0 in this state; rods beyond a strength yield at once."""
-        yielded = self.respond(displacement, plastic_strain, 0.0).plastic_strain
-        return Point(displacement, yielded, 0.0, self.respond(displacement, yielded, 0.0), 0.0)
+        response = self.respond(displacement, plastic_strain, 0.0)
+        if response.flowing.any():
+            response = self.respond(displacement, response.plastic_strain, 0.0)
+        return Point(displacement, response.plastic_strain, 0.0, response, 0.0)
 
     def after(self, start: Point, displacement: Array, t: float) -> Point:
         """The point with these displacements and t, yielding from an earlier one."""

@@ -13,8 +13,8 @@ from pinjoint.systems.statics.equations import Array, Flags, largest, normalised
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, moved, rod_names, slack_named
 from pinjoint.systems.statics.factor import SOFT, is_stable, regular, softest, unresisted
-from pinjoint.systems.statics.follow import HALF, Path, Point, Tangent
-from pinjoint.systems.statics.relax import RUNAWAY, STEPS, relax
+from pinjoint.systems.statics.follow import HALF, NARROWINGS, Path, Point, Tangent
+from pinjoint.systems.statics.relax import LARGEST_PLASTIC_STRAIN, RUNAWAY, STEPS, relax
 
 BEYOND = 1e-6  # of the change of load, by which a jump begins beyond a loss of stability
 FIRST_LOAD = 1 / 64  # of the change of load, under which a first-order mechanism takes its shape
@@ -23,7 +23,6 @@ STALLED = 0.05  # of a rod's length: a shorter jump counts as a stall
 MOST_STALLS = 2
 PASSING = 1000  # steps of relaxing under hardly more load before the whole load is tried
 MOST_INCREMENTS = 20000
-CRUSHED = -0.9  # plastic strain of a rod of which a tenth is left: soon its ends meet, and it has no direction
 
 
 @dataclass
@@ -32,7 +31,7 @@ class Loading:
 
     factors: load factors at its start and end. total: Σ |force| at the load factor 1 (kN).
     unstressed: no force acts at the start, so that any soft motion there is a mechanism.
-    events: those so far, to which `run` adds. slack: cables known to be slack.
+    events: those so far, to which `run` adds. slack: cables known to be slack. begun: plastic strain before any load.
     """
 
     model: Model
@@ -43,6 +42,7 @@ class Loading:
     events: list[Event]
     point: Point
     slack: Flags
+    begun: Array
     stalls: int = field(init=False, default=0)
     mechanism: bool = field(init=False, default=False)
 
@@ -54,14 +54,16 @@ class Loading:
             if self.point.t >= 1.0:
                 return self.path.polished(self.point)
             self._note_cables(tangent)
+            start = self.point, tangent
             tangent, increment = self._increment(tangent, increment)
             if largest(self.point.displacement[:, :2]) > RUNAWAY * self.path.structure.extent:
                 motion = self.path.structure.spread(tangent.rate)
                 if tangent.flowing.any():
                     raise self._collapse(tangent.flowing, motion)
                 raise self._mechanism(motion, tangent.slack)
-            if not self.path.structure.first_order and (self.point.plastic_strain <= CRUSHED).any():
-                raise self._crushed(self.path.structure.spread(tangent.rate))
+            if not self.path.structure.first_order and (torn := self._torn(self.point)).any():
+                self._narrow(*start)
+                raise self._beyond_strains(torn, self.path.structure.spread(tangent.rate))
         raise self._lost()
 
     # --- the start ---------------------------------------------------------------------------------
@@ -165,8 +167,8 @@ class Loading:
         self.mechanism = True
         motion = structure.spread(following.rate)
         message = tr(
-            "Plastic mechanism {at}: so many rods yield that the stiffness of the others no longer resists moving {motion}."
-            " This is the collapse load of textbooks; from here on the structure resists only by changing its shape.",
+            "Plastic mechanism {at}, the collapse load of textbooks: so many rods yield that the others do not resist moving"
+            " {motion}. Beyond it only large changes of shape carry more.",
             at=self._at(self.point.t),
             motion=describe_motion(self.model, motion[None]),
         )
@@ -290,18 +292,36 @@ class Loading:
         self._tell("collapse", self.point.t, message, flowing, motion)
         return NoEquilibrium("collapse", message)
 
-    def _crushed(self, motion: Array) -> NoEquilibrium:
-        """The end of a load that is still held, but by rods without length."""
-        crushed = self.point.plastic_strain <= CRUSHED
-        rows = np.flatnonzero(crushed)
+    def _torn(self, point: Point) -> Flags:
+        """Rods that have yielded by more than any metal bears."""
+        torn: Flags = np.abs(point.plastic_strain - self.begun) > LARGEST_PLASTIC_STRAIN
+        return torn
+
+    def _narrow(self, point: Point, tangent: Tangent) -> None:
+        """Go from here only as far as no rod has torn."""
+        increment = (self.point.t - point.t) * self.path.stretch(tangent)
+        for _ in range(NARROWINGS):
+            increment *= HALF
+            tried = self.path.attempt(point, tangent, increment)
+            if isinstance(tried, tuple) and not self._torn(tried[0]).any():
+                point, tangent = tried
+        self.point = point
+
+    def _beyond_strains(self, rods: Flags, motion: Array) -> NoEquilibrium:
+        """The end of a load that is still held, but by rods that no metal could be."""
+        rows = np.flatnonzero(rods)
         message = plural(
-            "Plastic collapse {at}: {rods} is crushed to a tenth of its length. Lower the load or strengthen this rod.",
-            "Plastic collapse {at}: {rods} are crushed to a tenth of their length. Lower the load or strengthen these rods.",
+            "Beyond the load factor {factor}, {rods} yields by more than a tenth of its length, which is no result. Lower"
+            " the load or strengthen this rod.",
+            "Beyond the load factor {factor}, {rods} yield by more than a tenth of their length, which is no result. Lower"
+            " the load or strengthen these rods.",
             len(rows),
-            at=self._at(self.point.t),
+            factor=written.number(self.factor(self.point.t)),
             rods=rod_names(self.model, rows),
         )
-        self._tell("collapse", self.point.t, message, crushed, motion)
+        earlier = (event.message for event in self.events if event.kind == "plastic mechanism")
+        message = joined([*earlier, message])
+        self._tell("collapse", self.point.t, message, rods, motion)
         return NoEquilibrium("collapse", message)
 
     def _mechanism(self, motion: Array, slack: Flags) -> NoEquilibrium:

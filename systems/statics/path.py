@@ -17,12 +17,13 @@ from numpy.typing import NDArray
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
+from pinjoint.components.theory import EXACT
 from pinjoint.components.wording import cut, missing
 from pinjoint.systems.statics.equations import AXES, Array, Structure, normalised, upright
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.explain import describe_motion
 from pinjoint.systems.statics.external import External
-from pinjoint.systems.statics.factor import regular, softest
+from pinjoint.systems.statics.factor import SOFT, regular, softest
 from pinjoint.systems.statics.follow import HALF, Path, Point, Step, Tangent
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import StaticState
@@ -30,7 +31,7 @@ from pinjoint.systems.statics.state import StaticState
 DETAIL = 0.02  # of a rod's length between points; smaller: a smoother curve
 FIRST = 1e-3  # of the same, for the first increment
 LANDED = 1e-13  # of the goal, or of the last increment: near enough
-LIMIT_POINT, BIFURCATION = marked("limit point"), marked("bifurcation")
+LIMIT_POINT, BIFURCATION, COLLAPSE = marked("limit point"), marked("bifurcation"), marked("collapse")
 SHARPNESS = 1e-10  # of an increment, to which a critical point is found in it
 MOST_TRIALS = 200  # to find a goal, or a critical point, within an increment
 ALONG = 0.5  # of the first increment on a branch: one that goes less far along its mode fell back
@@ -107,9 +108,16 @@ class Curve:
 
     @classmethod
     def of(
-        cls, model: Model, goal: Goal, *, points: int = 500, detail: float = DETAIL, branch: int = 0
+        cls,
+        model: Model,
+        goal: Goal,
+        *,
+        points: int = 500,
+        detail: float = DETAIL,
+        branch: int = 0,
+        theory: str = EXACT,
     ) -> Curve:
-        """The curve from the load factor 0 on, by arc-length continuation with exact geometry and yielding.
+        """The curve from the load factor 0 on, by arc-length continuation with yielding; of first order, up to collapse.
 
         The factor first grows, or falls below 0 if that leads towards the goal. The curve ends exactly at the goal, or
         after so many points, and goes straight on through bifurcations. Accelerations act in full from the start.
@@ -119,10 +127,10 @@ class Curve:
         """
         if points < 2:
             raise WrongValue("points is {points}; a curve has at least 2.", points=points)
-        unloaded = settle(model, (0.0,)).final
+        unloaded = settle(model, (0.0,), theory).final
         if not unloaded.balanced:
             raise ValueError(joined([tr("There is no equilibrium to start from."), unloaded.message]))
-        structure, external = Structure.of(model), External.of(model)
+        structure, external = Structure.of(model, theory), External.of(model)
         loaded = external.scaled + structure.carried(structure.unmoved)
         if not structure.gather(loaded).any():
             raise WrongValue(
@@ -148,7 +156,7 @@ class Curve:
 class _Critical:
     """A point where the tangent stiffness is singular, and the tangent of the path there.
 
-    kind: "limit point", where the load turns back, or "bifurcation".
+    kind: "limit point", where the load turns back, "bifurcation", or in first-order theory "collapse".
     """
 
     path: Path
@@ -160,6 +168,10 @@ class _Critical:
     def motion(self) -> Array:
         """What nothing resists, (n, …), the largest 1."""
         structure = self.path.structure
+        if (
+            self.kind == COLLAPSE and self.tangent.factor.exists
+        ):  # all that yields may leave more than one motion
+            return normalised(structure.spread(self.tangent.sense * self.tangent.rate))
         _, mode = softest(structure, self.point.response, self.tangent.soft, nearest=True)
         return upright(normalised(structure.spread(mode)))
 
@@ -178,6 +190,12 @@ class _Critical:
                     " the load falls; under a constant load the structure would jump.",
                     factor=factor,
                 )
+        elif self.kind == COLLAPSE:
+            message = tr(
+                "Collapse at the load factor {factor:.6g}: nothing resists moving {motion} any more.",
+                factor=factor,
+                motion=describe_motion(model, motion[None]),
+            )
         else:
             message = tr(
                 "Bifurcation at the load factor {factor:.6g}: another equilibrium path branches off here, along which"
@@ -252,6 +270,9 @@ class _Search:
         events: list[Event] = []
         bifurcations = 0
         while side != 0.0 and len(found) < points:
+            if path.structure.first_order and self._gives_way(point, tangent):
+                events.append(_Critical(path, COLLAPSE, point, tangent).event(model, self.sign, 0))
+                return found, False, events
             largest = detail / path.structure.move(tangent.rate, point.response) * path.stretch(tangent)
             step = path.advance(point, tangent, min(largest, increment * largest))
             if step is None:
@@ -259,7 +280,7 @@ class _Search:
             reached = side * self.beyond(step.point) <= 0.0
             if reached:
                 step = self._landed(found[-1], step)
-            for critical in self._passed(point, tangent, step):
+            for critical in () if path.structure.first_order else self._passed(point, tangent, step):
                 bifurcations += critical.kind == BIFURCATION
                 events.append(critical.event(model, self.sign, bifurcations))
                 if critical.kind == BIFURCATION and bifurcations == abs(branch):
@@ -274,6 +295,11 @@ class _Search:
                 return found, True, events
             increment = min(1.0, 2.0 * increment)
         return found, side == 0.0, events
+
+    def _gives_way(self, point: Point, tangent: Tangent) -> bool:
+        """True if only round-off resists some motion while so many rods yield or are slack."""
+        matrix = self.path.structure.tangent(point.response, tangent.soft)
+        return not regular(matrix, self.path.structure.weight, -SOFT).definite
 
     def _passed(self, point: Point, tangent: Tangent, step: Step) -> Iterator[_Critical]:
         """The critical points that a step from a point passes, a limit point first."""

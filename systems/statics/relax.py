@@ -21,7 +21,7 @@ STEP_CONVERGED = 1e-7  # of the force at its start
 LARGEST_PENALTY = 1e9
 NUDGE = 1e-3  # of a rod's length: how far to push off an unstable equilibrium
 BALANCED = 1e-9  # of the largest force: what is left over in an equilibrium, be it unstable
-LARGEST_PLASTIC_STRAIN = 0.2  # gained on the way; structural metal tears before
+LARGEST_PLASTIC_STRAIN = 0.1  # gained on the way; what is beyond is no result: structural metal tears before
 RUNAWAY = 100.0  # times the structure's extent: a displacement without end
 ROUND_AND_ROUND = 30.0  # rad: a rotation without end
 

@@ -15,11 +15,12 @@ from pinjoint.systems.statics.equations import ROUND_OFF, Array, Response, Struc
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External, loose_bodies
-from pinjoint.systems.statics.factor import SOFT, pseudo_random, regular, soft_modes, unresisted
+from pinjoint.systems.statics.factor import SOFT, SURELY_HELD, pseudo_random, regular, soft_modes, unresisted
 from pinjoint.systems.statics.state import STABLE, Start, StaticState
 
 _REFINEMENTS = 4  # of a linear solution
 _REFINEMENTS_OF_BENDING = 40  # at most; few unless hundreds of rods divide a long member
+PUSHED = 1e-9  # of a load: what of it moves a mechanism; less is round-off
 FULL = 600  # unknowns up to which all modes, eigenvalues and singular values are computed
 MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 
@@ -40,8 +41,15 @@ class FirstOrder:
         self._factor = regular(self._matrix, self._measure.weight)
 
     @cached_property
+    def held(self) -> bool:
+        """True if every motion is resisted, and by so much that no digits are lost."""
+        return regular(self._matrix, self._measure.weight, -SURELY_HELD).definite
+
+    @cached_property
     def mechanisms(self) -> Array:
         """The motions of the unknowns that nothing resists, (N, k)."""
+        if self.held:
+            return np.zeros((self.structure.size, 0))
         count = regular(self._matrix, self._measure.weight, -SOFT).negative
         return unresisted(self._measure, self.structure.unmoved, self._matrix, self._factor, most=count)
 
@@ -74,17 +82,19 @@ class FirstOrder:
             )
             raise NoEquilibrium("limit reached", message)
         right = structure.gather(load)
-        solution = self._refined(right)
-        if float(right @ solution) < SOFT * structure.effort(solution, structure.unmoved):
+        solution, modes = self._refined(right), self.mechanisms
+        work, weight = modes.T @ right, self._measure.weight
+        pushed = largest(work) > PUSHED * np.sqrt(right @ (right / weight))
+        if pushed or float(right @ solution) < SOFT * structure.effort(solution, structure.unmoved):
+            solution = modes @ work if pushed else solution
             message = tr(
                 "Mechanism: the load moves {motion}, and the resistance is less than {share:g} of the stiffness of the rods"
                 " there. Add rods or supports there, or make the stiffnesses less unequal.",
                 motion=describe_motion(model, structure.spread(solution)[None]),
                 share=SOFT,
             )
-            raise NoEquilibrium("mechanism", message)
-        modes = self.mechanisms
-        return structure.spread(solution - modes @ (modes.T @ (self._measure.weight * solution)))
+            raise NoEquilibrium("mechanism", message, normalised(structure.spread(solution)))
+        return structure.spread(solution - modes @ (modes.T @ (weight * solution)))
 
     def _refined(self, right: Array) -> Array:
         """The solution of K u = f to its last digits."""
