@@ -18,7 +18,7 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import PAUSE, Environment
 from pinjoint.components.table import Table
-from pinjoint.components.theory import EXACT, FIRST_ORDER
+from pinjoint.components.theory import EXACT
 from pinjoint.components.view import View
 from pinjoint.components.wording import missing, quoted
 from pinjoint.documents import models
@@ -217,10 +217,12 @@ class Headless(Context):
         goal = Goal.of(self.model, factor, until)
         return Curve.of(self.model, goal, points=points, branch=branch, theory=theory)
 
-    def statics(self, theory: str = FIRST_ORDER, load_factors: Sequence[float] | float = (1.0,)) -> Settlement:
-        """The equilibria at these load factors from the undeformed beginning, by "first-order" or "exact" theory.
+    def statics(
+        self, theory: str | None = None, load_factors: Sequence[float] | float | None = None
+    ) -> Settlement:
+        """The equilibria at load factors from the undeformed beginning, by "first-order" or "exact" theory.
 
-        Changes nothing. Each of its `states`, of which `final` is the last, has load_factor, status and columns, in order
+        None: as the settings of the model say. Changes nothing. Each of its `states`, of which `final` is the last, has load_factor, status and columns, in order
         of rows, as `columns["rods.bending_moment"]`: displacement, reaction (particles, 2), rotation, reaction_moment
         (particles,), axial_force, strain, plastic_strain, yielding (rods,), and in `diagrams` shear, bending_moment,
         end_axial_force, end_rotation (rods, 2) and largest_moment, with its place; m, rad, kN, kN·m. Its `events` are
@@ -231,12 +233,7 @@ class Headless(Context):
         >>> s.statics(load_factors=[1.0, 0.0]).final.axial_force.round(2).tolist()
         [28.7, -40.59, 28.7]
         """
-        from pinjoint.systems.statics.settle import settle
-        from pinjoint.systems.statics.state import Start
-
-        begun, name = self.document.undeformed, "rods.plastic_strain"
-        strain = begun.column(self.model, name) if begun is not None else self.rods.plastic_strain
-        return settle(self.model, load_factors, theory, Start.undeformed(self.model, strain.copy()))
+        return self.document.statics.settled(theory, load_factors)
 
     def buckling(self, modes: int = 5) -> Buckling:
         """Critical load factors by linear buckling, ascending, with their modes; changes nothing.

@@ -6,7 +6,7 @@ displacements and reactions are its own, so that pictures, panels, tables and sc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +21,7 @@ if TYPE_CHECKING:  # it imports scipy
     from pinjoint.systems.statics.settle import Settlement
 
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
+MOST_COMPARED = 300  # rods, up to which both theories take a moment only
 _CHOICES = "theory", "load_steps"  # of the settings
 _MOVED = "displacement", "rotation"  # of constrained directions: settled supports
 
@@ -40,6 +41,7 @@ class Statics:
         self._settlement: Settlement | None = None
         self.problem = ""
         self.revision, self.offered = 0, -1
+        self._compared = -1, ""  # the revision of which the theories were compared, and what is said of them
 
     @property
     def settlement(self) -> Settlement | None:
@@ -122,15 +124,44 @@ class Statics:
             self._find()
         self.revision = model.next_revision()
 
-    def _find(self) -> None:
-        from pinjoint.systems.statics.external import External
+    def settled(
+        self, theory: str | None = None, load_factors: Sequence[float] | float | None = None
+    ) -> Settlement:
+        """The way through load factors by a theory; None: those of the settings. Raises ValueError."""
         from pinjoint.systems.statics.settle import settle
         from pinjoint.systems.statics.state import Start
 
         model, settings = self._model, self._model.settings
-        try:
+        factors = settings.load_steps if load_factors is None else load_factors
+        with model.own_state():
             start = Start.undeformed(model, self._strain())
-            self._settlement, self.problem = settle(model, settings.load_steps, settings.theory, start), ""
+            return settle(model, factors, theory or settings.theory, start)
+
+    @property
+    def second_order(self) -> str:
+        """By how much, and where, the theories differ, where that is worth a word; "" of a large structure."""
+        settlement = self.settlement
+        if settlement is None or not settlement.final.balanced or self._model.rods.count > MOST_COMPARED:
+            return ""
+        if self._compared[0] != self.revision:
+            from pinjoint.systems.statics.second_order import SecondOrder
+
+            other = self.settled(EXACT if self.first_order else FIRST_ORDER)
+            both = (settlement, other) if self.first_order else (other, settlement)
+            found = None
+            if other.final.balanced:
+                found = SecondOrder.of(self._model, *(one.final for one in both))
+            told = tr("exact: {status}", status=tr(other.status)) if self.first_order else ""
+            said = found.said if found is not None else "" if other.final.balanced else told
+            self._compared = self.revision, said
+        return self._compared[1]
+
+    def _find(self) -> None:
+        from pinjoint.systems.statics.external import External
+
+        model = self._model
+        try:
+            self._settlement, self.problem = self.settled(), ""
         except ValueError as error:
             self._settlement, self.problem = None, str(error)
             self._columns = {}

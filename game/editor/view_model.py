@@ -51,7 +51,8 @@ def show(context: Context, elapsed: float) -> None:
     lasting += [_unsettled(context)] * (not any(lasting))
     solved = context.model.solution is not None
     if solved and not context.notice:
-        lasting = [context.document.statics.message]
+        statics = context.document.statics
+        lasting = [statics.message, statics.second_order if context.gesture is None else ""]
     view.preview = _preview(context)
     if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
         view.pressed = None
