@@ -222,11 +222,12 @@ class Headless(Context):
     ) -> Settlement:
         """The equilibria at load factors from the undeformed beginning, by "first-order" or "exact" theory.
 
-        None: as the settings of the model say. Changes nothing. Each of its `states`, of which `final` is the last, has load_factor, status and columns, in order
-        of rows, as `columns["rods.bending_moment"]`: displacement, reaction (particles, 2), rotation, reaction_moment
-        (particles,), axial_force, strain, plastic_strain, yielding (rods,), and in `diagrams` shear, bending_moment,
-        end_axial_force, end_rotation (rods, 2) and largest_moment, with its place; m, rad, kN, kN·m. Its `events` are
-        yields, cables that slacken, collapses with their motion; status and message are those of the end. Raises ValueError.
+        None: as the settings of the model say. Changes nothing. Each of its `states`, of which `final` is the last, has
+        load_factor, status and columns, in order of rows, as `columns["rods.bending_moment"]`: displacement, reaction
+        (particles, 2), rotation, reaction_moment (particles,), axial_force, strain, plastic_strain, yielding (rods,), and
+        in `diagrams` shear, bending_moment, end_axial_force, end_rotation (rods, 2) and largest_moment, with its place; m,
+        rad, kN, kN·m. Its `events` are yields, cables that slacken, collapses with their motion; status and message are
+        those of the end. Raises ValueError.
 
         >>> from pinjoint import Session
         >>> s = Session.open("three_bar_plastic")

@@ -14,6 +14,7 @@ from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.documents import models
 from pinjoint.systems.statics.path import Curve, Goal
+from pinjoint.systems.statics.second_order import SecondOrder
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import Start
 from pinjoint.systems.statics.theory import Indeterminacy
@@ -248,3 +249,20 @@ def test_a_curve_is_straight_between_yields_up_to_collapse() -> None:
     for piece in (slope[before], slope[~before]):
         assert piece == pytest.approx(piece[0], rel=1e-6)
     assert Curve.of(model, Goal.of(model, until="D.y=-0.001"), theory="first-order").complete
+
+
+def test_second_order_is_told_by_its_size_and_place() -> None:
+    """A cantilever under an axial load P: its moment and sway grow by about 1/(1 − P/P_cr)."""
+    column = {"stiffness": 1e7, "bending_stiffness": 1000.0}
+    for share in (0.002, 0.14):
+        push = [1.0, -share * np.pi**2 * 1000.0 / (4.0 * 3.0**2)]
+        places = [(0.0, 0.75 * i) for i in range(5)]
+        made = models.load(trusses.line(places, trusses.CLAMPED, {"force": push}, **column))
+        told = SecondOrder.of(made, settle(made, theory="first-order").final, settle(made).final)
+        if share < 0.005:
+            assert told is None
+        else:
+            assert told is not None
+            assert told.place == "P4"
+            assert told.share == pytest.approx(1.0 / (1.0 - share) - 1.0, rel=0.02)
+            assert told.said == "second order: +16 % at P4"
