@@ -183,11 +183,13 @@ class _State(NamedTuple):
 def _state(model: Model, rows: Rows) -> _State:
     rods, particles = model.rods, model.particles
     first, second = rods.between.astype(np.intp).T
-    present = rods.difference + particles.displacement[second] - particles.displacement[first]
+    present = rods.difference
+    if not model.first_order:
+        present = present + particles.displacement[second] - particles.displacement[first]
     length = np.hypot(present[:, 0], present[:, 1])
     along = present / np.where(length > 0.0, length, 1.0)[:, None]
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    across = along_and_across(rods.distributed_force, along)[1]
+    across = along_and_across(model.share * rods.distributed_force, along)[1]
     rigid = rigid_slopes(rods, particles.rotation[rods.between], chord_rotation(model))
     start, end = (length[:, None] * all_slopes(rods, rigid, across))[rows].T
     bent = rods.bending_stiffness > 0.0
@@ -204,7 +206,7 @@ def _state(model: Model, rows: Rows) -> _State:
 def inner_forces(model: Model, rows: Rows, quantity: str) -> Array:
     """N, V (kN) or M (kN·m) along some rods as polynomials; at their ends the computed columns.
 
-    M as in `moments_along`, with the force q across and the cubic deflection v.
+    M as in `moments_along`, with the force q across and, but for first-order theory, the cubic deflection v.
     """
     rods, state = model.rods, _state(model, rows)
     name = {AXIAL: "end_axial_force", SHEAR: "shear", MOMENT: "bending_moment"}[quantity]
@@ -212,7 +214,8 @@ def inner_forces(model: Model, rows: Rows, quantity: str) -> Array:
     if quantity != MOMENT:
         return np.stack([ends[:, 0], ends[:, 1] - ends[:, 0]], axis=1)
     load = state.across * rods.rest_length[rows] * state.length
-    return moments_along(ends, load, rods.axial_force[rows, None] * state.cubic[:, :4])
+    by_deflection = 0.0 if model.first_order else rods.axial_force[rows, None]
+    return moments_along(ends, load, by_deflection * state.cubic[:, :4])
 
 
 def zeros(polynomials: Array) -> tuple[Rows, Array]:
@@ -300,6 +303,6 @@ def distributed_shares(model: Model) -> Array:
     """What of the force (kN) on each particle is its share of forces distributed along rods, (particles, 2)."""
     rods, found = model.rods, np.zeros((model.particles.count, 2))
     if rods.distributed_force.any():
-        half = 0.5 * rods.distributed_force * rods.rest_length[:, None]
+        half = 0.5 * model.share * rods.distributed_force * rods.rest_length[:, None]
         np.add.at(found, rods.between.ravel(), np.repeat(half, 2, axis=0))
     return found

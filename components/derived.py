@@ -239,6 +239,9 @@ def chord_rotation(world: World) -> Column:
     relative = particles.displacement[second] - particles.displacement[first]
     difference = rods.difference
     sine = difference[:, 0] * relative[:, 1] - difference[:, 1] * relative[:, 0]
+    if world.first_order:
+        small: Column = sine / np.maximum(rods.original_length, 1e-300) ** 2
+        return small
     chord = np.arctan2(sine, (difference * (difference + relative)).sum(axis=1))
     return with_full_turns(chord, rods.turning_shares, particles.rotation[rods.between])
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pinjoint.components.bent import distributed_shares, is_frame
 from pinjoint.components.derived import chord_rotation, rigid_slopes
 from pinjoint.components.language import tr
-from pinjoint.components.load import factor_at
+from pinjoint.components.load import factor_now
 from pinjoint.components.model import Model
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.written import ROUNDING
@@ -71,8 +71,9 @@ class Apart(NamedTuple):
 def _pulls(model: Model) -> tuple[Vectors, Vectors]:
     rods, particles = model.rods, model.particles
     first, last = rods.between.astype(np.intp).T
-    places = particles.position + particles.displacement
-    along = places[last] - places[first]
+    along = rods.difference
+    if not model.first_order:
+        along = along + particles.displacement[last] - particles.displacement[first]
     along = along / np.maximum(np.hypot(*along.T), 1e-300)[:, None]
     rate = ((particles.velocity[last] - particles.velocity[first]) * along).sum(axis=1)
     force, damper = rods.axial_force, rods.damping * rate
@@ -81,12 +82,18 @@ def _pulls(model: Model) -> tuple[Vectors, Vectors]:
     return total, along
 
 
+def _lengths(model: Model) -> Vectors:
+    """The distances (m) between ends at which forces act on rods."""
+    found: Vectors = model.rods.original_length if model.first_order else model.rods.length
+    return found
+
+
 def _of_bending(model: Model, along: Vectors) -> Vectors:
     """What bending and distributed forces add on the ends of every rod, dampers included, (m, 2, 3)."""
     rods, particles = model.rods, model.particles
     first, last = rods.between.astype(np.intp).T
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    length = np.maximum(rods.length, 1e-300)
+    length = np.maximum(_lengths(model), 1e-300)
     turning = ((particles.velocity[last] - particles.velocity[first]) * left).sum(axis=1) / length
     rate = rigid_slopes(rods, particles.angular_velocity[rods.between], turning)
     start, mixed, end = rods.end_damping.T
@@ -133,15 +140,15 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
     applied = np.append(
         particles.applied_force[row] - distributed_shares(model)[row], particles.applied_moment[row]
     )
-    loads, time, rest = model.loads, model.clock.time, applied.copy()
+    loads, rest = model.loads, applied.copy()
     turns = bool(rigid_joints(model)[row])
     for k in np.flatnonzero(loads.on == row).tolist():
-        now = factor_at(loads.history[k], time) * np.append(loads.force[k], loads.moment[k])
+        now = factor_now(model, loads.history[k]) * np.append(loads.force[k], loads.moment[k])
         rest -= now
         x, y, turn = now.tolist()
         found.append(Force(model.describe(loads[k]), "load", x, y, k, turn * turns))
     weight = particles.mass[row] * (particles.acceleration[row] + environment.acceleration) / 1000.0
-    own = np.append(particles.force[row] + environment.force, particles.moment[row])
+    own = model.share * np.append(particles.force[row] + environment.force, particles.moment[row])
     for name, part in ((tr("force"), own), (tr("weight"), np.append(weight, 0.0))):
         rest -= part
         if (part * [1.0, 1.0, turns]).any():
@@ -168,10 +175,10 @@ def on_rod(model: Model, row: int) -> list[Force]:
     """The forces and moments of its two joints on a rod, and the force distributed along it."""
     known, rods = Apart.of(model), model.rods
     on_ends, along = known.on_ends[row].tolist(), known.along[row]
-    names, length = model.particles.names, float(rods.length[row])
+    names, length = model.particles.names, float(_lengths(model)[row])
     first, last = rods.between[row].tolist()
     (x, y, turn), (far_x, far_y, far_turn) = on_ends
-    pressed = rods.distributed_force[row] * rods.rest_length[row]
+    pressed = model.share * rods.distributed_force[row] * rods.rest_length[row]
     lever = length * float(along[0] * far_y - along[1] * far_x)
     lever *= is_frame(model) or bool(pressed.any())  # of a bar's it is rounding only
     found = [
@@ -182,6 +189,7 @@ def on_rod(model: Model, row: int) -> list[Force]:
         rigid = rods.turning_shares[row] > 0.0
         slopes = np.where(rigid, model.particles.rotation[rods.between[row]] - chord_rotation(model)[row], 0.0)
         bow = float(rods.load_shares[row] @ slopes) / rods.rest_length[row]  # mean deflection
+        bow *= not model.first_order
         place = 0.5 * length * along + bow * np.array([-along[1], along[0]])
         lever = float(place[0] * pressed[1] - place[1] * pressed[0])
         x, y = pressed.tolist()

@@ -199,6 +199,13 @@ def static_factor(history: History) -> float:
     return static(history) if callable(static) else static
 
 
+def factor_now(world: World, history: History) -> float:
+    """The factor of a history in what columns show: at the time of the run, or in statics."""
+    if world.solution is not None:
+        return world.solution.share * static_factor(history)
+    return factor_at(history, float(world.tables["clock"].time[0]))
+
+
 def load_ends(world: World) -> list[float]:
     """The time (s) after which each load does not change any more; −∞ if it never does."""
     return [HISTORIES[history["kind"]].ends(history) for history in world.tables["loads"].history]

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections import ChainMap
+from typing import Any
 
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import Field, Vector, derived, if_known, look
+from pinjoint.components.field import LARGEST, Field, FieldError, Vector, derived, if_known, look
 from pinjoint.components.handle import Handle
+from pinjoint.components.theory import FIRST_ORDER, THEORIES
+from pinjoint.components.wording import quoted
 
 AUTOMATIC = "automatic"
 NO_DIAGRAMS = "none"
@@ -16,6 +19,28 @@ DIAGRAMS = (
     "V",
 )  # of axial forces, bending moments and shears, in the order in which they follow one another
 INTEGRATORS = ChainMap(EXTENSIONS.integrators, {AUTOMATIC: None})  # the names of all there are at any time
+PAUSE, STATICS = HUBS = (
+    "pause",
+    "statics",
+)  # the scenes from which a person edits, and in which a model may open
+MOST_LOAD_STEPS = 100
+
+
+def check_load_steps(value: Any, where: str) -> tuple[float, ...]:
+    """Load factors, or FieldError."""
+    steps = value.tolist() if hasattr(value, "tolist") else value
+    if (
+        isinstance(steps, list | tuple)
+        and 0 < len(steps) <= MOST_LOAD_STEPS
+        and all(isinstance(s, int | float) and not isinstance(s, bool) and abs(s) <= LARGEST for s in steps)
+    ):
+        return tuple(map(float, steps))
+    raise FieldError(
+        "{where}: load steps are {value}; give a list of one to {most} load factors, such as [1] or [1, 0].",
+        where=where,
+        value=quoted(value),
+        most=MOST_LOAD_STEPS,
+    )
 
 
 class Settings(Handle):
@@ -74,6 +99,24 @@ class Settings(Handle):
         title="diagrams at first",
         doc="Which force diagrams are shown when the model is opened: axial forces N, bending moments M or shears V.",
         choices=(NO_DIAGRAMS, *DIAGRAMS),
+    )
+    theory: Field[str] = look(
+        dtype=str,
+        default=FIRST_ORDER,
+        doc="Of statics: first-order, about the original shape, or exact, about the deformed one.",
+        choices=THEORIES,
+    )
+    load_steps: Field[tuple[float, ...]] = look(
+        dtype=object,
+        default=(1.0,),
+        doc="Of statics: the factors of forces and loads that follow one another; the last is shown.",
+        checker=check_load_steps,
+    )
+    opens_in: Field[str] = look(
+        dtype=str,
+        default=PAUSE,
+        doc="The mode in which a person meets the model: pause, before its motion, or statics, in equilibrium.",
+        choices=HUBS,
     )
     automatic_displacement_scale: Field[float] = derived(default=1.0, doc="The scale that suits the model.")
     displacement_scale: Field[float] = derived(default=1.0, doc="As given, or the automatic one.")

@@ -24,6 +24,7 @@ class Store(Protocol):
     tables: dict[str, Table[Any]]
     row_of_entity: NDArray[np.int64]
     structure: int
+    solution: Any
 
     def read(self, handle: Any, field: Field[Any]) -> Any: ...
     def assign(self, handles: Sequence[Any], field_name: str, values: Any) -> None: ...
@@ -177,7 +178,15 @@ class Table(Generic[H]):
         return f"<{self.count} {self.name}{': ' + few if few else ''}{', …' if few and self.count > 6 else ''}>"
 
     def column(self, name: str) -> Column:
-        """The column as a read-only view, shape (count, ...), derived columns up to date."""
+        """The column as a read-only view, shape (count, ...), derived columns up to date.
+
+        Where the world shows a solution in place of the state, that of the solution.
+        """
+        world = self._world()  # which may be gone
+        if world is not None and world.solution is not None:
+            found: Column | None = world.solution.columns.get(f"{self.name}.{name}")
+            if found is not None:
+                return found
         storage = self.current(name)
         shown = self._shown.get(name)
         if shown is None or shown[0] is not storage or len(shown[1]) != self.count:

@@ -237,6 +237,7 @@ class View:
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
     panel appeared.
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
+    provisional: why what is shown is no equilibrium, which makes results pale; "": it is one.
     card: a task of a lesson, in place of a model. cuts: rods that are drawn cut. has_units: values of forces tell theirs.
     """
 
@@ -279,6 +280,7 @@ class View:
     fitted: bool = False
     shares: bool = False
     aside: Viewport | None = None
+    provisional: str = ""
     card: Card | None = None
     cuts: tuple[Cut, ...] = ()
     has_units: bool = True

@@ -5,10 +5,10 @@ from __future__ import annotations
 import itertools
 import weakref
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, NoReturn, TypeVar
+from typing import Any, NoReturn, Protocol, TypeVar
 
 import esper
 import numpy as np
@@ -36,6 +36,23 @@ class Derivation:
     compute: Callable[[World], None]
 
 
+class Solution(Protocol):
+    """What columns show in place of the state: an equilibrium that is found when it is asked for.
+
+    columns: by "table.field", of as many rows as the tables have now. revision: at which they changed last.
+    first_order: forces act on the original geometry. share: of the forces distributed along rods that acts.
+    """
+
+    @property
+    def columns(self) -> Mapping[str, Column]: ...
+    @property
+    def revision(self) -> int: ...
+    @property
+    def first_order(self) -> bool: ...
+    @property
+    def share(self) -> float: ...
+
+
 class World:
     """A model: tables of entities. Documents change by `execute`; state by columns that `writable` grants.
 
@@ -45,6 +62,7 @@ class World:
     before_command: called before a command begins; its exceptions stop the command.
     revision: grows by one at every change of anything.
     changing: a command is being applied; code that is interrupted now would leave half of it.
+    solution: what columns show in place of the state; None: the state. Storage, snapshots and files hold the state anyway.
     """
 
     def __init__(self, kinds: Sequence[type[Handle]], derivations: Iterable[Derivation] = ()) -> None:
@@ -62,6 +80,8 @@ class World:
         self._tagged: dict[type, NDArray[np.intp]] = {}  # by tag: esper ids, ascending
         self._tagged_rows: dict[type, tuple[Any, dict[str, NDArray[np.intp]]]] = {}  # with their revisions
         self.changing = False
+        self.solution: Solution | None = None
+        self._shown_since = 0  # revision at which the solution took the place of the state, or gave it back
         self._naming: Callable[[int, str], str] | None = None
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}
@@ -100,9 +120,39 @@ class World:
 
     def version(self, column: str) -> int:
         """The revision at which a column, named "table.field", last changed; derived ones up to date."""
+        if self.solution is not None and column in self.solution.columns:
+            return max(self.solution.revision, self._shown_since)
         self.refresh(column)
         table, field = column.split(".")
-        return self.tables[table].version(field)
+        held = self.tables[table]
+        return max(held.version(field), self._shown_since if field in held.state else 0)
+
+    # --- a solution in place of the state ----------------------------------------------------------
+
+    def show(self, solution: Solution | None) -> None:
+        """Let columns show a solution from now on; None: the state."""
+        if solution is not self.solution:
+            self.solution, self._shown_since = solution, self.next_revision()
+
+    @contextmanager
+    def own_state(self) -> Iterator[None]:
+        """Let columns show the state inside, whatever stands in its place."""
+        outer = self.solution
+        self.show(None)
+        try:
+            yield
+        finally:
+            self.show(outer)
+
+    @property
+    def first_order(self) -> bool:
+        """True if what columns show is an equilibrium of the original geometry."""
+        return self.solution is not None and self.solution.first_order
+
+    @property
+    def share(self) -> float:
+        """The share of the forces distributed along rods that acts in what columns show."""
+        return 1.0 if self.solution is None else self.solution.share
 
     def newest(self, *roles: Role) -> int:
         """The revision of the newest change to any column with one of these roles."""
@@ -138,6 +188,10 @@ class World:
 
     def read(self, handle: Handle, field: Field[Any]) -> Any:
         """The value of one Field of one entity."""
+        if self.solution is not None and field.role not in MADE:
+            column = self.solution.columns.get(f"{handle.table}.{field.name}")
+            if column is not None:
+                return field.loaded(column, self.row(handle))
         if field.derived:
             self.refresh(f"{handle.table}.{field.name}")
         row = self.row_of_entity.item(handle.entity)
@@ -267,7 +321,7 @@ class World:
         derivation = self._derivations.get(name)
         if derivation is None or (known := self._derived_at[derivation]) == self.revision:
             return
-        if max(self.newest(*self._roots_of(derivation)), self.structure) > known:
+        if max(self.newest(*self._roots_of(derivation)), self.structure, self._shown_since) > known:
             new_rows = (self.tables[target.split(".")[0]].structure for target in derivation.targets)
             sources = map(self.version, derivation.sources)
             if any(changed > known for changed in itertools.chain(sources, new_rows)):
@@ -390,7 +444,11 @@ class World:
     def apply(self, command: Command) -> Command:
         """Apply a command without telling the log; returns its exact inverse."""
         if self.before_change is not None and self._concerns_runs(command):
-            self.before_change()
+            if self.solution is None:
+                self.before_change()
+            else:
+                with self.own_state():
+                    self.before_change()
         match command:
             case Create():
                 return self._create(command)

@@ -17,6 +17,7 @@ from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.load import HISTORIES
 from pinjoint.components.mistake import Explained, WrongValue
 from pinjoint.components.model import Model
+from pinjoint.components.settings import PAUSE
 from pinjoint.components.wording import missing
 from pinjoint.documents import models
 from pinjoint.documents.library import data_in
@@ -28,7 +29,7 @@ from pinjoint.mods.mod import LOG, Mod
 from pinjoint.session import Session
 from pinjoint.systems.base import Commit, Event, Integrator, Law, StepSystem, StopReason, System
 from pinjoint.systems.catalogue import all_systems
-from pinjoint.systems.input.actions import ACTIONS, PAUSE, SIMULATION
+from pinjoint.systems.input.actions import ACTIONS, SIMULATION
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.binding import KERNELS, PROVIDED, Bound, ProgramError, bind
 from pinjoint.systems.program.compiler import Choice

@@ -16,9 +16,9 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
-from pinjoint.components.settings import Environment
+from pinjoint.components.settings import PAUSE, Environment
 from pinjoint.components.table import Table
-from pinjoint.components.theory import EXACT, FIRST_ORDER
+from pinjoint.components.theory import EXACT
 from pinjoint.components.view import View
 from pinjoint.components.wording import missing, quoted
 from pinjoint.documents import models
@@ -157,6 +157,9 @@ class Headless(Context):
     @contextmanager
     def _time_passing(self) -> Iterator[Simulation]:
         """Time passes inside: it is one run in the log, which stops, by ModError, where a mod fails."""
+        if self.model.solution is not None:  # whose columns show no run
+            self.scenes.request(PAUSE)
+            self.scenes.apply(self)
         self._act_in_scene()
         document, simulation = self.document, self.simulation
         document.note_beginning()
@@ -214,26 +217,24 @@ class Headless(Context):
         goal = Goal.of(self.model, factor, until)
         return Curve.of(self.model, goal, points=points, branch=branch, theory=theory)
 
-    def statics(self, theory: str = FIRST_ORDER, load_factors: Sequence[float] | float = (1.0,)) -> Settlement:
-        """The equilibria at these load factors from the undeformed beginning, by "first-order" or "exact" theory.
+    def statics(
+        self, theory: str | None = None, load_factors: Sequence[float] | float | None = None
+    ) -> Settlement:
+        """The equilibria at load factors from the undeformed beginning, by "first-order" or "exact" theory.
 
-        Changes nothing. Each of its `states`, of which `final` is the last, has load_factor, status and columns, in order
-        of rows, as `columns["rods.bending_moment"]`: displacement, reaction (particles, 2), rotation, reaction_moment
-        (particles,), axial_force, strain, plastic_strain, yielding (rods,), and in `diagrams` shear, bending_moment,
-        end_axial_force, end_rotation (rods, 2) and largest_moment, with its place; m, rad, kN, kN·m. Its `events` are
-        yields, cables that slacken, collapses with their motion; status and message are those of the end. Raises ValueError.
+        None: as the settings of the model say. Changes nothing. Each of its `states`, of which `final` is the last, has
+        load_factor, status and columns, in order of rows, as `columns["rods.bending_moment"]`: displacement, reaction
+        (particles, 2), rotation, reaction_moment (particles,), axial_force, strain, plastic_strain, yielding (rods,), and
+        in `diagrams` shear, bending_moment, end_axial_force, end_rotation (rods, 2) and largest_moment, with its place; m,
+        rad, kN, kN·m. Its `events` are yields, cables that slacken, collapses with their motion; status and message are
+        those of the end. Raises ValueError.
 
         >>> from pinjoint import Session
         >>> s = Session.open("three_bar_plastic")
         >>> s.statics(load_factors=[1.0, 0.0]).final.axial_force.round(2).tolist()
         [28.7, -40.59, 28.7]
         """
-        from pinjoint.systems.statics.settle import settle
-        from pinjoint.systems.statics.state import Start
-
-        begun, name = self.document.undeformed, "rods.plastic_strain"
-        strain = begun.column(self.model, name) if begun is not None else self.rods.plastic_strain
-        return settle(self.model, load_factors, theory, Start.undeformed(self.model, strain.copy()))
+        return self.document.statics.settled(theory, load_factors)
 
     def buckling(self, modes: int = 5) -> Buckling:
         """Critical load factors by linear buckling, ascending, with their modes; changes nothing.

@@ -16,7 +16,7 @@ from pinjoint.components.language import begun, joined, listed, marked, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod, bends
-from pinjoint.components.settings import NO_DIAGRAMS
+from pinjoint.components.settings import NO_DIAGRAMS, PAUSE, STATICS
 from pinjoint.components.view import View, lesson_share
 from pinjoint.components.wording import missing
 from pinjoint.documents.format import ModelError, missing_mods
@@ -43,7 +43,6 @@ from pinjoint.systems.input.actions import (
     FILES,
     FORMS,
     LIVE,
-    PAUSE,
     SIMULATION,
     TEXT,
 )
@@ -52,6 +51,10 @@ from pinjoint.systems.schedule import Plan
 
 MODEL, SCRIPT = ".json", ".jsonl"  # files that a person may drop on the window
 FARTHEST = 1e9  # pixels from the corner of the window to which a click may be
+_SAID = {  # where a key does nothing that does something in pause
+    SIMULATION: marked("{action}: press Space to pause first."),
+    STATICS: marked("{action}: no time passes in statics. Space runs, Q leaves it."),
+}
 LARGEST_SIDE, LARGEST_RATIO = 65_536, 64.0  # of a window, in pixels, and in pixels per point
 
 
@@ -180,6 +183,7 @@ class Session(Headless):
     def _begin_document(self) -> None:
         """Show the document that is open now, with its sliders, from the first frame on."""
         model, view = self.model, self.view
+        self.show_state()
         view.sliders = sliders_of(self)
         self._make_room()
         view.fit(model)
@@ -244,8 +248,8 @@ class Session(Headless):
             left = self._left_for_tools() if press.for_tools else ""
             if press.action != left:  # the tool that opens a scene closes it, too
                 self.act(press.action, press.at)
-        elif self.scene == SIMULATION and (found := ACTIONS.at(PAUSE, key)) and not ACTIONS.at(self.scene, key):
-            self.notice = tr("{action}: press Space to pause first.", action=begun(tr(found[1].title)))
+        elif self.scene in _SAID and (found := ACTIONS.at(PAUSE, key)) and not ACTIONS.at(self.scene, key):
+            self.notice = tr(_SAID[self.scene], action=begun(tr(found[1].title)))
 
     def _record(self, key: str, pixel: Vector | None) -> None:
         if self.recorder is not None:

@@ -44,6 +44,7 @@ class Assessment:
         self._degrees: tuple[tuple[int, ...], Indeterminacy] | None = None
         self._error: tuple[Moment, MeasuredError | None] | None = None
         self._balanced: tuple[int, bool] | None = None
+        self._resting: tuple[int, bool] | None = None
 
     def begin(self, beginning: Snapshot) -> None:
         """A run begins in this state."""
@@ -116,9 +117,13 @@ class Assessment:
     @property
     def in_equilibrium(self) -> bool:
         """True if it came to rest or was settled, and is in equilibrium under the present load."""
-        if self._model.particles.velocity.any() and not self._rests:
-            return False
-        return self.balanced and (self._rests or _balanced(self._model))
+        model = self._model
+        if self._rests or (model.particles.velocity.any() and not self._rests):
+            return self._rests and self.balanced
+        at = model.newest(Role.DOCUMENT, Role.STATE)
+        if self._resting is None or self._resting[0] != at:
+            self._resting = at, model.clock.collision_state is not None or not self.is_small or _balanced(model)
+        return self._resting[1]
 
     @property
     def _rests(self) -> bool:

@@ -26,8 +26,9 @@ LEAST = 1e-7  # of the size: smaller displacements are rounding
 class Exaggeration:
     """Chooses the automatic factor of one model, in round steps, and keeps it while it shows enough and not too much.
 
-    It follows from the displacements that theory expects and, while time stands still, from those that there are: never
-    from a frame of a run, so that a picture does not jump with what vibrates, and a recording is replayed in the same.
+    It follows from those of a static solution, where that is shown; else from the displacements that theory expects and,
+    while time stands still, from those that there are: never from a frame of a run, so that a picture does not jump with
+    what vibrates, and a recording is replayed in the same.
     """
 
     def __init__(self, model: Model) -> None:
@@ -37,7 +38,8 @@ class Exaggeration:
     def review(self, *, still: bool) -> bool:
         """Choose anew if the model was edited, or moved and stands `still` now; True if the drawn factor changed."""
         model = self._model
-        seen = model.newest(Role.DOCUMENT, Role.LOOK), model.newest(Role.STATE) if still else -1
+        solved = -1 if model.solution is None else model.solution.revision
+        seen = model.newest(Role.DOCUMENT, Role.LOOK), model.newest(Role.STATE) if still else -1, solved
         if model.settings.prescribed_displacement_scale is not None or seen == self._seen:
             return False
         self._seen = seen
@@ -50,9 +52,12 @@ class Exaggeration:
         """The factor that suits the model, the present one if it does."""
         model, present = self._model, float(self._model.settings.automatic_displacement_scale)
         size = extent(model) if model.particles.count else 0.0
-        if not 0.0 < size < math.inf or incomputable(model) or _moves_far(model):
+        if not 0.0 < size < math.inf or incomputable(model):
             return TRUE
-        largest = max(_largest_expected(model), _amplitude(model) if still else 0.0)
+        if model.solution is None and _moves_far(model):
+            return TRUE
+        expected = 0.0 if model.solution is not None else _largest_expected(model)
+        largest = max(expected, _amplitude(model) if still else 0.0)
         if not math.isfinite(largest):
             return TRUE
         if largest < LEAST * size:

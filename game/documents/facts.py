@@ -125,7 +125,7 @@ def _facts_of(model: Model, kind: type[Handle], rows: Rows | None) -> _FactsOfKi
     table, columns = model.tables[kind.table], []
     rows = np.arange(table.count) if rows is None else rows
     for field in table.fields_in(*SAVED):
-        column = table.column(field.name)[rows]
+        column = table.storage(field.name)[rows]
         if field.references is not None:
             column = model.tables[field.references].column("name")[column]
         columns.append((field, column))

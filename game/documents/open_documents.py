@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from pinjoint.components.clock import PersistentContacts
-from pinjoint.components.field import SAVED
+from pinjoint.components.field import SAVED, Column
 from pinjoint.components.language import joined, plural, tr
 from pinjoint.components.load import load_ends
 from pinjoint.components.model import Model
@@ -25,6 +25,7 @@ from pinjoint.documents.history.history import History
 from pinjoint.documents.history.log import Edit, Entry
 from pinjoint.documents.history.timeline import Timeline
 from pinjoint.documents.shapes import Shapes
+from pinjoint.documents.statics import Statics
 from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.run.real_time import RealTimeRunner
@@ -77,6 +78,7 @@ class OpenDocument:
         self.undeformed: Snapshot | None = None
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
+        self.statics = Statics(model, self._strain_undeformed)
         self.exaggeration = Exaggeration(model)
         self.chronicle = Chronicle(model, self.simulation)
         self.file = file
@@ -107,9 +109,21 @@ class OpenDocument:
         if self.simulation.passed_since(self.undeformed):
             return False
         return all(
-            np.array_equal(self.undeformed.column(self.model, name), self.model.column(name))
-            for name in SETTLED
+            np.array_equal(self.undeformed.column(self.model, name), self._held(name)) for name in SETTLED
         )
+
+    def _held(self, name: str) -> Column:
+        """A column of the state, whatever is shown in its place."""
+        table, _, field = name.partition(".")
+        return self.model.tables[table].storage(field)
+
+    def _strain_undeformed(self) -> Column:
+        """The plastic strain from before it was run or settled."""
+        name = "rods.plastic_strain"
+        if self.is_undeformed:
+            return self._held(name).copy()
+        begun = self.undeformed or Snapshot.initial(self.model)
+        return begun.column(self.model, name).copy()
 
     def _note_undeformed(self) -> None:
         """Time is about to pass, or the structure to settle."""
@@ -161,16 +175,20 @@ class OpenDocument:
             model.give("particles.angular_velocity", np.where(model.particles.fixed_rotation, 0.0, spin))
             model.clock.collision_state = begun.columns["clock.collision_state"][0]
 
-    def settle(self, factors: Sequence[float] | float) -> tuple[str, str]:
+    def settle(self, factors: Sequence[float] | float, *, anew: bool = False) -> tuple[str, str]:
         """Go to the static equilibrium at each load factor; returns its status and the account of the way there.
 
-        It is not called "equilibrium" where laws of mods act that statics does not know.
+        It is not called "equilibrium" where laws of mods act that statics does not know. anew: from the undeformed
+        beginning, not from the present state.
         """
         from pinjoint.systems.statics.settle import settle  # scipy
+        from pinjoint.systems.statics.state import Start
 
         self._note_undeformed()
         model, clock = self.model, self.model.clock
-        found, strain = settle(model, factors), model.rods.plastic_strain.copy()
+        start = Start.undeformed(model, self._strain_undeformed()) if anew else Start.present(model)
+        strain = start.plastic_strain
+        found = settle(model, factors, start=start)
         with model.transaction("settle"):
             found.final.put(model)
             time = max([clock.time, *(end for end in load_ends(model) if end < math.inf)])

@@ -18,7 +18,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.model import Model
-from pinjoint.components.settings import Settings
+from pinjoint.components.settings import HUBS, STATICS, Settings
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import Preview, View
 from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments
@@ -27,6 +27,7 @@ from pinjoint.systems.base import Mod
 from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.forms.properties import heading
+from pinjoint.systems.input.actions import FORMS
 from pinjoint.systems.render.model.sheet import Stage
 from pinjoint.systems.run.energy import Energy
 from pinjoint.systems.run.simulation import Simulation
@@ -91,7 +92,7 @@ class Scene:
 
     name: ClassVar[str]
     heading: str = ""
-    targets: ClassVar[tuple[str, ...]] = ("pause",)
+    targets: ClassVar[tuple[str, ...]] = HUBS
     sources: ClassVar[tuple[str, ...]] = ()
     systems: ClassVar[tuple[str, ...]] = ()
     mod: Mod | None = None
@@ -183,11 +184,15 @@ class Scene:
 
 
 class Scenes:
-    """The state machine: exactly one scene is active; a requested transition waits for `apply`."""
+    """The state machine: exactly one scene is active; a requested transition waits for `apply`.
+
+    hub: "pause" or "statics", whichever was active last; other scenes lead back there.
+    """
 
     def __init__(self, scenes: Sequence[Scene]) -> None:
         self._by_name = {scene.name: scene for scene in scenes}
         self.active = scenes[0]
+        self.hub = self.active.name
         self._requested: list[str] = []
 
     def __getitem__(self, name: str) -> Scene:
@@ -217,8 +222,9 @@ class Scenes:
         self._requested.extend(names)
 
     def request_from_pause(self, name: str) -> None:
-        """Ask for a scene that is entered from pause, through it where time passes."""
-        self.request(*(("pause", name) if self.active.name == "simulation" else (name,)))
+        """Ask for a scene that is entered from pause or statics, through pause where time passes."""
+        way = dict.fromkeys((*(("pause",) if self.active.name == "simulation" else ()), name))
+        self.request(*(scene for scene in way if scene != self.active.name))
 
     def apply(self, context: Context) -> None:
         """Make the requested transitions: exit, then enter. From a scene of a mod that is switched off, to pause."""
@@ -228,6 +234,8 @@ class Scenes:
             name = self._requested.pop(0)
             self.active.exit(context)
             self.active = self._by_name[name]
+            self.hub = name if name in HUBS else self.hub
+            context.show_state()
             self.active.enter(context)
             if context.time_passes:
                 context.document.history.begin_run()
@@ -314,6 +322,11 @@ class Context:
         """The impacts of the run so far, in columns."""
         return self.simulation.impacts
 
+    def show_state(self) -> None:
+        """Let the model show its static solution in statics and beside the boxes that it leads to, else its state."""
+        solved = self.scenes.hub == STATICS and self.scene in (STATICS, *FORMS)
+        self.model.show(self.document.statics if solved else None)
+
     @property
     def fault(self) -> str:
         """The mod that failed last and why, until Escape is pressed; "" if none did."""
@@ -321,14 +334,14 @@ class Context:
 
     # --- time --------------------------------------------------------------------------------------
 
-    def settle(self, factors: Sequence[float] | float = (1.0,)) -> str:
+    def settle(self, factors: Sequence[float] | float = (1.0,), *, anew: bool = False) -> str:
         """Go to the static equilibrium at each load factor in turn, without letting time pass.
 
         Can be undone. Returns "equilibrium", "neutral equilibrium" or "unstable equilibrium"; or "mechanism",
         "collapse" or "limit reached" with the last good state; `message` says more. Time moves on to the end of the
-        last load history. Raises ValueError.
+        last load history. anew: from the undeformed beginning. Raises ValueError.
         """
-        status, self.notice = self.document.settle(factors)
+        status, self.notice = self.document.settle(factors, anew=anew)
         return status
 
     def has_program(self, simulation: Simulation) -> bool:

@@ -10,7 +10,7 @@ from typing import Any
 from pinjoint.components.field import Field
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, decimals, joined, marked, tr
-from pinjoint.components.load import Load, factor_at
+from pinjoint.components.load import Load, factor_now
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.rod import Rod
@@ -76,16 +76,16 @@ def control_of(model: Model, key: int, slider: Slider) -> Control | None:
     field, value = model.tables[aim.table].fields[aim.field], _value(aim, handle)
     unit, factor = field.shown
     text = tr(field.absent) if value is None else _written(value * factor, unit)
-    text = joined([text, _now(handle, aim.field, model.clock.time)], ", ")
+    text = joined([text, _now(model, handle, aim.field)], ", ")
     share = None if value is None else slider.share_of(value)
     return Control(key, slider.title or _title(model, aim, handle, field), text, share, "×")
 
 
-def _now(handle: Handle, field: str, time: float) -> str:
-    """How much of a load acts at a time (s), where that is not all of it."""
+def _now(model: Model, handle: Handle, field: str) -> str:
+    """How much of a load acts now, where that is not all of it."""
     if not isinstance(handle, Load) or field not in (Load.force.name, Load.moment.name):
         return ""
-    factor = factor_at(handle.history, time)
+    factor = factor_now(model, handle.history)
     if not math.isfinite(factor) or f"{factor:.0%}" == "100%":
         return ""
     return tr("now {share} %", share=f"{100.0 * factor:.0f}".replace("-", "−"))

@@ -21,6 +21,7 @@ PLACE = "place"  # the tools of mods stand at the end of its group, their other 
 # The actions of the toolbar, in groups from the top to the bottom.
 TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("toggle run", "restart", "step back", "step", "slower", "faster", "settle"),
+    ("toggle statics", "next theory"),
     ("next part", "release x", "release y", "release another"),
     ("toggle diagrams of sets", "back"),
     ("undo", "redo", "copy", "paste", "duplicate", "delete"),
@@ -142,7 +143,7 @@ def _of_canvas(context: Context) -> Groups:
             ("paste", marked("paste here")),
             "select all",
         ],
-        ["toggle run", "restart", "settle"],
+        ["toggle run", "restart", "settle", "toggle statics", "next theory"],
         ["toggle diagrams", "toggle free bodies", "toggle utilisation"],
         ["toggle theory", "toggle energy", "toggle events", "next shape"],
         [*of_mods(draw=False)],

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, english, joined, listed, marked, plural, tr
 from pinjoint.components.model import Model
@@ -48,11 +49,16 @@ def show(context: Context, elapsed: float) -> None:
         ]
     )
     lasting += [_unsettled(context)] * (not any(lasting))
+    solved = context.model.solution is not None
+    if solved and not context.notice:
+        statics = context.document.statics
+        lasting = [statics.message, statics.second_order if context.gesture is None else ""]
     view.preview = _preview(context)
     if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
         view.pressed = None
     view.flashes = _flashes(context)
     view.heading = tr(scene.heading)
+    view.provisional = _provisional(context)
     view.shape = context.document.shapes.shown
     view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
     _show_readouts(context)
@@ -60,7 +66,7 @@ def show(context: Context, elapsed: float) -> None:
     drawing = tr(context.gesture.hint) if context.gesture is not None else _hint_of_tool(context)
     drawing = drawing if context.scene in LIVE else ""
     view.status = Status(
-        time=context.time,
+        time=None if solved else context.time,
         speed=context.document.live.clock.shown_pace if context.busy else 0.0,
         state=_state_word(context),
         hint=drawing or scene.hint(context),
@@ -88,6 +94,21 @@ def _unsettled(context: Context) -> str:
         return ""
     return tr(
         "The model was edited and is no longer in equilibrium. Press E for the new equilibrium (right click: settle)."
+    )
+
+
+def _provisional(context: Context) -> str:
+    """Why what is shown is no equilibrium; "" if it is one, or nothing is computed."""
+    model, document = context.model, context.document
+    if not model.rods.count or not context.view.forces_known:
+        return ""
+    if model.solution is not None:
+        return "" if document.statics.balanced else tr(document.statics.said)
+    if document.assessment.in_equilibrium:
+        return ""
+    time = written.time(model.clock.time)
+    return (
+        tr("in motion, t = {time}", time=time) if context.busy else tr("no equilibrium, t = {time}", time=time)
     )
 
 
@@ -217,12 +238,14 @@ def _end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
 
 def _state_word(context: Context) -> str:
     """The state of the run in English, which is translated where it is shown."""
+    if context.model.solution is not None:
+        return context.document.statics.said
     if context.simulation.halted:
         return marked("at rest") if context.simulation.reason is StopReason.REST else marked("diverged")
     if context.awaited is not None:
         return marked("preparing")
     if not context.busy:
-        return marked("paused")
+        return marked("paused, not in equilibrium") if context.view.provisional else marked("paused")
     return marked("running below the set speed") if context.document.live.clock.lagging else marked("running")
 
 

@@ -71,7 +71,7 @@ def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list
             rod=begun(name),
         )
     ends, last = rod.ends, len(lengths) - 1
-    with model.transaction(tr("divide {rods}", rods=name)):
+    with model.own_state(), model.transaction(tr("divide {rods}", rods=name)):
         between = _particles(model, rod, shares)
         chain = [ends[0], *between, ends[1]]
         pairs = [(first.row, second.row) for first, second in itertools.pairwise(chain)]
@@ -98,7 +98,7 @@ def _columns(model: Model, rod: Rod, lengths: Numbers) -> dict[str, Any]:
     for field in table.fields_in(*SAVED):
         if field.name in ("name", "between", "hinged"):
             continue
-        values = np.repeat(table.column(field.name)[row : row + 1], len(lengths), axis=0)
+        values = np.repeat(table.storage(field.name)[row : row + 1], len(lengths), axis=0)
         if field.name in _WITH_LENGTH:
             values = values * lengths
         elif field.name in _AGAINST_LENGTH:

@@ -61,9 +61,9 @@ def join(model: Model, first: Particle, second: Particle, *, rigid: bool = False
     rigid: a member with rigid ends, like the newest one that bends, else of the usual section. Raises Refusal if it
     cannot be.
     """
-    check_ends(model, first, second)
-    moved = first.displacement != second.displacement
-    with model.transaction(tr("new {noun}", noun=tr(Rod.noun))):
+    with model.own_state(), model.transaction(tr("new {noun}", noun=tr(Rod.noun))):
+        check_ends(model, first, second)
+        moved = first.displacement != second.displacement
         [rod] = model.create(
             Rod,
             between=[(first.row, second.row)],

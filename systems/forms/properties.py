@@ -30,6 +30,8 @@ _OF_RODS = (
     "diagram_scale",
     "original_diagrams",
     "diagrams",
+    "theory",
+    "opens_in",
     "plasticity",
     "sleeping",
 )  # settings that concern rods; the others particles
@@ -101,7 +103,7 @@ def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
     for section, kind, of_rods in ((tr("All particles"), Particle, False), (tr("All rods"), Rod, True)):
         if not selected or kind in kinds:
             fields = model.tables[Settings.table].fields_in(*SAVED)
-            chosen = tuple(field for field in fields if (field.name in _OF_RODS) is of_rods)
+            chosen = tuple(f for f in fields if (f.name in _OF_RODS) is of_rods and f.dtype is not object)
             if not is_frame(model):
                 chosen = tuple(field for field in chosen if field is not Settings.original_diagrams)
             found.append(Subject(section, (model.settings,), np.zeros(1, dtype=np.intp), chosen))

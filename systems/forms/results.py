@@ -14,7 +14,7 @@ from pinjoint.components.field import CM, Field, Role
 from pinjoint.components.form import Reading
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import marked, tr, tr_in
-from pinjoint.components.load import CONSTANT, Load, factor_at
+from pinjoint.components.load import CONSTANT, Load, factor_now
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends_unchecked, rigid_joints, utilisation
@@ -200,7 +200,7 @@ def _of_loads(model: Model, particle: int) -> Iterator[Reading]:
         if load.moment:
             text += f", {written.given(load.moment)} kN·m"
         if load.history["kind"] != CONSTANT["kind"]:
-            now = factor_at(load.history, model.clock.time) * model.loads.force[row]
+            now = factor_now(model, load.history) * model.loads.force[row]
             text = tr("{now} of {whole}", now=written.vector(now, written.DIGITS), whole=text)
         yield _result(model.describe(load), text, Load.force)
 

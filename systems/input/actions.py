@@ -9,11 +9,12 @@ from typing import Any, TypeVar
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, tr
+from pinjoint.components.settings import HUBS
 from pinjoint.components.wording import missing
 
-SIMULATION, PAUSE = "simulation", "pause"
+SIMULATION = "simulation"
 PROPERTIES, SAVE, LOAD, FORCE_METHOD = "properties", "save", "load", "force method"
-LIVE = (SIMULATION, PAUSE)
+LIVE = (SIMULATION, *HUBS)
 FORMS = (PROPERTIES, SAVE, LOAD)
 EVERY = (*LIVE, *FORMS, FORCE_METHOD)
 IN_LESSONS = (*LIVE, PROPERTIES, FORCE_METHOD)

@@ -91,6 +91,14 @@ def _colour(code: str) -> Colour:
     return red, green, blue, 255
 
 
+def pale(colour: Colour, background: Colour) -> Colour:
+    """The colour half way to that of the background."""
+    red, green, blue = (
+        round(0.45 * own + 0.55 * behind) for own, behind in zip(colour[:3], background[:3], strict=True)
+    )
+    return red, green, blue, colour[3]
+
+
 def faded(colour: Colour, opacity: float) -> Colour:
     """The colour at that opacity, 0 to 1."""
     return (*colour[:3], round(255 * opacity))

@@ -117,6 +117,7 @@ class StaticState:
         }
         of_rods: dict[str, NDArray[Any]] = {
             **self.diagrams,
+            "end_moment": self.diagrams["bending_moment"] * [-1.0, 1.0],
             "axial_force": self.axial_force,
             "length": self.length,
             "strain": self.strain,

@@ -1,7 +1,7 @@
 """The page about what a model consists of is made from the Fields: `python -m tests.architecture.test_fields`."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -112,7 +112,9 @@ def default(field: Field[Any]) -> str:
     if value is None:
         return field.absent
     return (
-        value if isinstance(value, str) else f"`{json.dumps(dict(value) if field.dtype is object else value)}`"
+        value
+        if isinstance(value, str)
+        else f"`{json.dumps(dict(value) if isinstance(value, Mapping) else value)}`"
     )
 
 

@@ -427,7 +427,7 @@ def test_loading_in_the_middle_of_a_run_works(session: Session) -> None:
     assert session.scene == "pause"
     session.press("space")
     session.press("ctrl+n")
-    assert (session.scene, session.particles.count) == ("simulation", 0)
+    assert (session.scene, session.particles.count) == ("statics", 0)  # new structures are drawn there
 
 
 # --- the folder --------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ from pinjoint.components.grid import Grid
 from pinjoint.components.language import marked, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
+from pinjoint.components.settings import HUBS
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import DrawForce, DrawMoment, DrawRod, DrawVelocity, tool_in_hand
 from pinjoint.systems.edit import Refusal
@@ -17,7 +18,7 @@ from pinjoint.systems.edit.picking import pick_end, pick_particle, pick_rod
 from pinjoint.systems.edit.placing import place, snapped
 from pinjoint.systems.edit.rods import is_rigid, set_rigid, share_at, toggle_hinge, toggle_joint
 from pinjoint.systems.edit.supports import next_support
-from pinjoint.systems.input.actions import PAUSE, actions_of
+from pinjoint.systems.input.actions import actions_of
 
 action = actions_of("Draw")
 
@@ -168,14 +169,14 @@ action(
 )(DrawVelocity.use)
 
 
-@action("new grid", "g", "add a grid", (PAUSE,))
+@action("new grid", "g", "add a grid", HUBS)
 def _new_grid(context: Context, pixel: Vector) -> None:
     with context.model.transaction(marked("new grid")):
         context.model.assign(list(context.model.grids), "shown", False)
         context.model.create(Grid)
 
 
-@action("next grid", "h", "show the next grid", (PAUSE,), enabled=attrgetter("model.grids.count"))
+@action("next grid", "h", "show the next grid", HUBS, enabled=attrgetter("model.grids.count"))
 def _next_grid(context: Context, pixel: Vector) -> None:
     """Show the grid after the shown one; after the last, none; after none, the first."""
     grids = list(context.model.grids)

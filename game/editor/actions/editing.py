@@ -10,6 +10,7 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.language import listed, marked, plural, tr
+from pinjoint.components.settings import HUBS, PAUSE, STATICS
 from pinjoint.editor.clipboard import Part
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import Drawing, DrawSupport, tool_in_hand
@@ -26,7 +27,6 @@ from pinjoint.systems.input.actions import (
     IN_LESSONS,
     IN_PICTURES,
     LIVE,
-    PAUSE,
     SIMULATION,
     actions_of,
 )
@@ -106,7 +106,7 @@ def _open_menu(context: Context, pixel: Vector) -> None:
 
 
 @action("drag", "drag", "pull a particle, or select in a box", (SIMULATION,))
-@action("drag", "drag", "move an element, or select in a box", (PAUSE,), while_drawing=True)
+@action("drag", "drag", "move an element, or select in a box", HUBS, while_drawing=True)
 def _drag(context: Context, pixel: Vector) -> None:
     """With a tool, draw; else drag the element under the pointer; where there is none, a box to select in."""
     model, view = context.model, context.view
@@ -118,9 +118,9 @@ def _drag(context: Context, pixel: Vector) -> None:
         _draw(context, tool, pixel)
     elif particle is not None and context.scene == "simulation":
         context.gesture = PullParticle(context, particle)
-    elif context.scene == "pause" and particle is None and (grip := pick_point(model, view, pixel)) is not None:
+    elif context.scene in HUBS and particle is None and (grip := pick_point(model, view, pixel)) is not None:
         context.gesture = MovePoint(context, grip)
-    elif context.scene == "pause" and (hit := particle or pick_line(model, view, pixel)) is not None:
+    elif context.scene in HUBS and (hit := particle or pick_line(model, view, pixel)) is not None:
         context.gesture = Move(context, hit, pixel)
     else:
         context.gesture = BoxSelect(context, pixel, adding=False)
@@ -162,7 +162,7 @@ def _draw(context: Context, tool: str, pixel: Vector) -> None:
 # --- keys ------------------------------------------------------------------------------------------------
 
 
-@action("escape", "escape", "put the tool away, or deselect", (PAUSE,))
+@action("escape", "escape", "put the tool away, or deselect", HUBS)
 @action("escape", "escape", "put the tool away, or pause", (SIMULATION,), while_drawing=True)
 def _escape(context: Context, pixel: Vector) -> None:
     """Cancel the drawing, else put the tool away, else hide a shape, else end the run or deselect."""
@@ -174,6 +174,8 @@ def _escape(context: Context, pixel: Vector) -> None:
         context.scenes.request("pause")
     elif context.has_selected:
         context.select()
+    elif context.scene == STATICS:
+        context.notice = tr("Nothing is selected. Q leaves statics, F1 shows all keys.")
     else:
         context.notice = tr("Nothing is selected, and the run is paused. Space starts it, F1 shows all keys.")
 
@@ -246,7 +248,11 @@ for _held, _name, _title in (
     for _way, _direction in {"left": (-1, 0), "right": (1, 0), "up": (0, 1), "down": (0, -1)}.items():
         if "move" in _name or _direction[1]:  # without Ctrl, left and right go through time
             _act = partial(_move, _direction, "far" in _name, "move" in _name)
-            action(f"{_name} {_way}", _held + _way, _title, (PAUSE,), repeats=True)(_act)
+            action(
+                f"{_name} {_way}", _held + _way, _title, HUBS if "move" in _name else (PAUSE,), repeats=True
+            )(_act)
+            if "move" in _name:  # where no time passes
+                action(f"{_name} {_way}", _held.replace("ctrl+", "") + _way, _title, (STATICS,))(_act)
 
 
 def _can_go(by: int, context: Context) -> bool:

@@ -5,16 +5,17 @@ from __future__ import annotations
 from pinjoint.components.field import Vector
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
+from pinjoint.components.settings import HUBS, STATICS
 from pinjoint.documents.models import ModelError
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.input.actions import ACTIONS, PAUSE, actions_of
+from pinjoint.systems.input.actions import ACTIONS, actions_of
 
 action = actions_of("Files")
 
 
-action("save", "s", "save as", (PAUSE,))(lambda context, pixel: context.scenes.request_from_pause("save"))
+action("save", "s", "save as", HUBS)(lambda context, pixel: context.scenes.request_from_pause("save"))
 action("save", "ctrl+shift+s", "save as")(ACTIONS["save"].perform)
 
 
@@ -39,9 +40,17 @@ def _save_again(context: Context, pixel: Vector) -> None:
         context.notice = str(error)
 
 
-action("load", "d", "open a model", (PAUSE,))(lambda context, pixel: context.scenes.request_from_pause("load"))
+action("load", "d", "open a model", HUBS)(lambda context, pixel: context.scenes.request_from_pause("load"))
 action("load", "ctrl+o", "open a model")(ACTIONS["load"].perform)
-action("new", "ctrl+n", "start a new model")(lambda context, pixel: context.documents.open(Model()))
+
+
+@action("new", "ctrl+n", "start a new model")
+def _new(context: Context, pixel: Vector) -> None:
+    """An empty model, whose structure is drawn in statics."""
+    model = Model()
+    model.settings.opens_in = STATICS
+    context.documents.open(model)
+    context.scenes.request_from_pause(STATICS)
 
 
 @action("sheet", "", "save a sheet: drawing, diagrams and tables as a PDF")

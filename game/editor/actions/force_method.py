@@ -49,7 +49,7 @@ def _work(context: Context, text: str, do: Callable[[], object]) -> None:
 @_guided
 def _next_part(context: Context, guide: Guide, pixel: Vector) -> None:
     if guide.part == PARTS:
-        context.scenes.request("pause")
+        context.scenes.request(context.scenes.hub)
     elif guide.part == 2:
         guide.next()
     else:
@@ -144,4 +144,6 @@ def _toggle_diagrams(context: Context, guide: Guide, pixel: Vector) -> None:
             one.view.all_diagrams = context.view.all_diagrams
 
 
-action("back", "escape", "leave the force method")(lambda context, pixel: context.scenes.request("pause"))
+action("back", "escape", "leave the force method")(
+    lambda context, pixel: context.scenes.request(context.scenes.hub)
+)

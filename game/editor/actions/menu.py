@@ -10,6 +10,7 @@ from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
+from pinjoint.components.settings import HUBS
 from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.force_method import ForceMethod
 from pinjoint.systems.edit import Refusal
@@ -18,7 +19,7 @@ from pinjoint.systems.edit.picking import pick_rod
 from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import share_at, weigh_along
 from pinjoint.systems.edit.supports import SUPPORTS, Held, held, support
-from pinjoint.systems.input.actions import ACTIONS, MENU, PAUSE, actions_of
+from pinjoint.systems.input.actions import ACTIONS, MENU, actions_of
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.menu import entry_beside, pointed_at
 
@@ -134,7 +135,7 @@ for _parts, _title in DIVISIONS.items():
     )(partial(_divide, _parts))
 
 
-@offer("release", "", "release it in the force method", (PAUSE,))
+@offer("release", "", "release it in the force method", HUBS)
 def _release(context: Context, pixel: Vector) -> None:
     """Begin the force method with the selected rod as the static unknown."""
     rods, scene = context.selected_of(Rod), context.scenes["force method"]

@@ -13,14 +13,15 @@ from pinjoint.components.load import Load
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, has_strength
-from pinjoint.components.settings import DIAGRAMS
+from pinjoint.components.settings import DIAGRAMS, HUBS, PAUSE, STATICS
 from pinjoint.components.tags import DiagramShown
+from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.documents.shapes import NoShape
 from pinjoint.editor.actions.view import toggle
 from pinjoint.editor.context import Context
 from pinjoint.editor.sliders import add_slider
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.input.actions import PAUSE, actions_of
+from pinjoint.systems.input.actions import SIMULATION, actions_of
 from pinjoint.systems.render.model.diagrams import NAMES
 
 action = actions_of("Results", while_drawing=True)
@@ -80,6 +81,37 @@ def _following(context: Context, shown: bool) -> bool:
     view.quantity = DIAGRAMS[DIAGRAMS.index(view.quantity) + 1] if shown else AXIAL
     context.notice = tr("{quantity}. Press I for the next.", quantity=begun(tr(NAMES[view.quantity])))
     return True
+
+
+@action(
+    "toggle statics",
+    "q",
+    "show the equilibrium, by statics",
+    pressed=lambda context: context.scenes.hub == STATICS and context.scene != SIMULATION,
+    while_drawing=False,
+)
+def _toggle_statics(context: Context, pixel: Vector) -> None:
+    """Go to statics, or back to pause."""
+    context.scenes.request_from_pause(PAUSE if context.scene == STATICS else STATICS)
+
+
+@action(
+    "next theory",
+    "z",
+    "change the theory of statics: first order or exact",
+    (STATICS,),
+    pressed=lambda context: context.model.settings.theory == EXACT,
+    while_drawing=False,
+)
+def _next_theory(context: Context, pixel: Vector) -> None:
+    """First-order theory, or exact geometry."""
+    settings = context.model.settings
+    settings.theory = FIRST_ORDER if settings.theory == EXACT else EXACT
+    context.notice = (
+        tr("First-order theory: forces act on the original shape, as in a course.")
+        if settings.theory == FIRST_ORDER
+        else tr("Exact: forces act on the deformed shape, however far it moves.")
+    )
 
 
 action("toggle free bodies", "x", "show or hide free-body diagrams", pressed=attrgetter("view.free_bodies"))(
@@ -157,9 +189,7 @@ def _usual(model: Model, elements: Sequence[Handle]) -> tuple[Sequence[Handle], 
     return elements, field, "x" if abs(x) > abs(y) else "y"
 
 
-@action(
-    "force method", "k", "force method", (PAUSE,), while_drawing=False, enabled=attrgetter("model.rods.count")
-)
+@action("force method", "k", "force method", HUBS, while_drawing=False, enabled=attrgetter("model.rods.count"))
 def _force_method(context: Context, pixel: Vector) -> None:
     if context.model.particles.count == 0:
         raise Refusal("There is nothing to solve yet; draw a structure with P and L, or open one with D.")

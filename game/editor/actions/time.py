@@ -9,29 +9,61 @@ from operator import attrgetter
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.language import joined, plural, tr
+from pinjoint.components.load import load_ends
+from pinjoint.components.rod import nodes
+from pinjoint.components.settings import PAUSE, STATICS
 from pinjoint.editor.actions.editing import nudge
 from pinjoint.editor.context import Context
 from pinjoint.systems.collision.impacts import TooManyImpacts
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.input.actions import PAUSE, actions_of
+from pinjoint.systems.input.actions import SIMULATION, actions_of
 from pinjoint.systems.physics.pace import natural_pace
 
 action = actions_of("Time")
 
 PACE_STEP = 2.0
+WITH_TIME = (SIMULATION, PAUSE)  # the scenes in which keys of time mean something
 FAR = 0.2  # s shown that one press skips
 MOST_WORK = 1_000_000  # steps × elements of one skip, some 20 ms
 MOST_IMPACTS = 1_000_000  # of free discs that the steps of one press may hold, about a second
 MANY = 2000  # elements; the pace that suits larger models takes too long to find
 
 
-action(
+@action(
     "toggle run",
     "space",
     "run or pause",
     pressed=lambda context: context.scenes.active.tools == "simulation",
     pressed_as=lambda context: ("pause", ""),
-)(lambda context, pixel: context.scenes.request("pause" if context.scene == "simulation" else "simulation"))
+)
+def _toggle_run(context: Context, pixel: Vector) -> None:
+    """Run or pause; from statics, go on from the equilibrium, if it moves, or else begin undeformed."""
+    if context.scene == STATICS and not _begin_from_statics(context):
+        return
+    context.scenes.request("pause" if context.scene == "simulation" else "simulation")
+
+
+def _begin_from_statics(context: Context) -> bool:
+    """Let the model begin in its equilibrium, as one entry of the log; False where it would only stay there.
+
+    Asked a second time, it begins undeformed instead.
+    """
+    model, statics = context.model, context.document.statics
+    moving = model.tables["particles"].storage("velocity").any() or not nodes(model).all()
+    if statics.offered == statics.revision:
+        context.restart()
+        return True
+    if statics.balanced and not moving and math.inf not in load_ends(model):
+        statics.offered = statics.revision
+        context.notice = tr(
+            "In equilibrium nothing would move. Press Space again to let it begin undeformed, with its loads at once."
+        )
+        return False
+    if statics.balanced:
+        context.settle(model.settings.load_steps, anew=True)
+    return True
+
+
 action("pause")(lambda context, pixel: context.scenes.request("pause"))
 
 
@@ -116,16 +148,18 @@ def _restart(context: Context, pixel: Vector) -> None:
 @action("settle", "e", "find equilibrium at once", enabled=attrgetter("model.particles.count"))
 def _settle(context: Context, pixel: Vector) -> None:
     """Go to the static equilibrium under the full load."""
+    if context.scene == STATICS:
+        raise Refusal("What is shown is the equilibrium already. Z changes the theory, Q leaves statics.")
     context.settle()
     context.view.follow(context.model, clear=True)
 
 
-action("faster", "+", "run faster", repeats=True, while_drawing=True)(
+action("faster", "+", "run faster", WITH_TIME, repeats=True, while_drawing=True)(
     lambda context, pixel: context.document.live.clock.faster(PACE_STEP)
 )
-action("slower", "-", "run slower", repeats=True, while_drawing=True)(
+action("slower", "-", "run slower", WITH_TIME, repeats=True, while_drawing=True)(
     lambda context, pixel: context.document.live.clock.faster(1.0 / PACE_STEP)
 )
-action("natural pace", "0", "reset the speed to suit the model", while_drawing=True)(
+action("natural pace", "0", "reset the speed to suit the model", WITH_TIME, while_drawing=True)(
     lambda context, pixel: setattr(context.document.live.clock, "factor", 1.0)
 )

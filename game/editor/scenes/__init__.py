@@ -8,6 +8,7 @@ from pinjoint.editor.scenes.files import Pictures, Save
 from pinjoint.editor.scenes.force_method import ForceMethod, Sets
 from pinjoint.editor.scenes.load import Load
 from pinjoint.editor.scenes.properties import Properties
+from pinjoint.editor.scenes.statics import Solve, Statics
 from pinjoint.systems.base import System
 from pinjoint.systems.render.model.sheet import Stage
 
@@ -15,10 +16,11 @@ __all__ = ["PHYSICS", "Scene", "Scenes", "Stage", "all_scenes", "scene_systems"]
 
 
 def all_scenes() -> list[Scene]:
-    """The six modes of Pinjoint, beginning with the one that the program starts in, and the modes of mods."""
+    """The seven modes of Pinjoint, beginning with the one that the program starts in, and the modes of mods."""
     return [
         Pause(),
         Simulation(),
+        Statics(),
         Properties(),
         Save(),
         Load(),
@@ -29,7 +31,7 @@ def all_scenes() -> list[Scene]:
 
 def scene_systems() -> list[System]:
     """The systems that belong to single modes."""
-    return [Pictures(), Sets()]
+    return [Pictures(), Sets(), Solve()]
 
 
 class Pause(Scene):
@@ -37,7 +39,7 @@ class Pause(Scene):
 
     name = "pause"
     heading = marked("Pause")
-    targets = ("simulation", "properties", "save", "load", "force method")
+    targets = ("simulation", "statics", "properties", "save", "load", "force method")
 
     def hint(self, context: Context) -> str:
         if context.model.particles.count == 0:

@@ -198,7 +198,7 @@ class Save(FileScene):
         except (library.NameRefused, models.ModelError) as error:
             self.form.message = str(error)
             return
-        context.scenes.request("pause")
+        context.scenes.request(context.scenes.hub)
 
     def changed(self, context: Context) -> None:
         super().changed(context)

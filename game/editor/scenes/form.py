@@ -49,7 +49,7 @@ class FormScene(Scene):
 
     def leave(self, context: Context) -> None:
         """Esc while no box is selected."""
-        context.scenes.request("pause")
+        context.scenes.request(context.scenes.hub)
 
     def accept(self, context: Context) -> None:
         """Return: accept the selected box."""

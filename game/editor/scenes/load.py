@@ -116,7 +116,7 @@ class Load(FileScene):
         except models.ModelError as error:
             self.form.message = str(error)
         else:
-            context.scenes.request("pause")
+            context.scenes.request(context.model.settings.opens_in if context.lesson is None else "pause")
 
     def changed(self, context: Context) -> None:
         """Show the tiles whose titles or names contain every word that was typed."""

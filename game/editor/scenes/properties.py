@@ -33,7 +33,7 @@ class Properties(FormScene):
 
     def __init__(self) -> None:
         super().__init__()
-        self._return_to: tuple[str, ...] = ("pause",)
+        self._return_to: tuple[str, ...] = ("pause",)  # also whose tools act beside the boxes
         self._at_left = False
         self._looked: tuple[object, ...] = ()  # the camera and the part of the window beside the boxes, and
         self._camera = Camera()  # what shows the model there
@@ -108,7 +108,7 @@ class Properties(FormScene):
 
     def opened_from(self, scene: str) -> None:
         """Leaving goes back to that scene."""
-        self._return_to = ("pause", scene) if scene == "simulation" else ("pause",)
+        self._return_to = ("pause", scene) if scene == "simulation" else (scene,)
 
     def leave(self, context: Context) -> None:
         context.scenes.request(*self._return_to)

@@ -249,7 +249,7 @@ def _draw_forces(
     tip, of = tail + along * length[:, None], [("particles", row) for row in rows.tolist()]
     of = whose(sheet.model, rows) if name == "load" else of
     sheet.explain(name, tail, tip)
-    draw_arrows(sheet, of, tail, along, length, getattr(sheet.theme, name), parts)
+    draw_arrows(sheet, of, tail, along, length, sheet.colour_of(name), parts)
     sheet.occupancy.block_squares(0.5 * (tail + tip), np.minimum(0.2 * length, 3.0 * sheet.unit))
     pulls = (outer == direction)[:, None]  # the head is at the outer end
     _write_forces(sheet, name, of, parts, value, np.where(pulls, tail, tip), np.where(pulls, tip, tail))
@@ -323,7 +323,7 @@ def _write_forces(
     places = by_arrows(half, start, end, _BY_ARROW * sheet.unit)
     out = (end - start) / np.hypot(*(end - start).T)[:, None]
     lines = np.stack([end, 0.5 * (start + end), start], axis=1)
-    colour, ranks = getattr(sheet.theme, name), (FIRST - worth).tolist()
+    colour, ranks = sheet.colour_of(name), (FIRST - worth).tolist()
     for k, index in enumerate(shown.tolist()):
         key, leads = (field, int(which[index])), (lines[k], out[k])
         write(

@@ -35,6 +35,7 @@ from pinjoint.systems.render.model.values import (
     said,
     write,
 )
+from pinjoint.systems.render.symbols import dashed
 from pinjoint.systems.render.theme import Colour, faded
 
 NAMES = {
@@ -61,6 +62,7 @@ _MANY = 300  # rods, above which diagrams of those that bend are outlines
 _PIECES, _PIECE = 1_440, 5.0  # of all diagrams of rods that bend, at most; points, or longer
 _ROOM, _SHARE = 1.25, 0.3  # of the room of force diagrams; of the largest shear, the least that fills it with N
 _HATCH = 7.0  # points between lines across
+_DASH = 4.0  # points, of the outlines of what is no equilibrium
 _NOTHING = 1e-3  # of the largest value: what is not told
 _ALIKE = 5e-3  # of the largest value: what counts as the same
 _GREAT = 0.5  # of the largest value: what is told before all else
@@ -333,8 +335,12 @@ def _draw_areas(sheet: Sheet, name: str, diagram: _Diagram, heights: Values, dra
     if is_outlined:
         outline = np.concatenate([points[:, :1], edge, points[:, -1:]], axis=1)
         first, last = outline[:, :-1].reshape(-1, 2), outline[:, 1:].reshape(-1, 2)
-        each, width = ("rods", np.repeat(rows, outline.shape[1] - 1)), 1.25 if diagram.is_straight else 1.4
-        sheet.marks.append(Strokes(first, last, width * u, faded(colour, 0.9), each))
+        each, width = np.repeat(rows, outline.shape[1] - 1), 1.25 if diagram.is_straight else 1.4
+        start, end, of_line = first, last, each
+        if sheet.view.provisional:
+            start, end, dash = dashed(first, last, _DASH * u)
+            of_line = each[dash]
+        sheet.marks.append(Strokes(start, end, width * u, faded(colour, 0.9), ("rods", of_line)))
         sheet.occupancy.line(first, last, FAINT)
     if name != "zero":
         shown = (np.concatenate([points[:, end], edge[:, end]]) for end in (0, -1))
@@ -348,8 +354,7 @@ def _draw_areas(sheet: Sheet, name: str, diagram: _Diagram, heights: Values, dra
 
 
 def _colour(sheet: Sheet, name: str) -> Colour:
-    found: Colour = sheet.theme.ink if name in ("moment", "shear") else getattr(sheet.theme, name)
-    return found
+    return sheet.colour_of("ink" if name in ("moment", "shear") else name)
 
 
 def _hatch(sheet: Sheet, diagram: _Diagram, drawn: Truths, colour: Colour, name: str) -> None:
@@ -428,7 +433,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
     for k, row in enumerate(diagram.rows[which].tolist()):
         of, key, rank = ("rods", row), (field, int(keys[shown[k]])), -float(worth[k])
         sign = "zero" if abs(value[k]) <= SMALLEST else "tension" if value[k] > 0.0 else "compression"
-        colour = _colour(sheet, sign) if quantity == AXIAL else sheet.theme.text
+        colour = _colour(sheet, sign) if quantity == AXIAL else sheet.colour_of("text")
         leads, short = (
             (anchors[k], normal[k]),
             _written(sheet, quantity, float(value[k]), nothing, few=False) if told else "",

@@ -165,7 +165,7 @@ def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) ->
     u, centre, radius = sheet.unit, sheet.centres[row], float(sheet.radii[row])
     for force in forces:
         if abs(force.moment) > SMALLEST:
-            colour: Colour = sheet.theme.ink if force.kind == "inertia" else getattr(sheet.theme, force.kind)
+            colour: Colour = sheet.theme.ink if force.kind == "inertia" else sheet.colour_of(force.kind)
             key, around = f"particles.{force.name}.moment", np.array([radius + 2.0 * _ARC * u])
             at, rows = centre[None], np.array([row])
             draw_arcs(sheet, ("particles", rows), at, around, np.array([force.moment]), colour, key)
@@ -183,7 +183,7 @@ def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) ->
         length = float(lengths(sheet, FORCES, np.array([size]), largest)[0])
         rim = centre + (radius + OFF * u) * side + aside
         tail = rim + length * side if pushes else rim
-        colour = sheet.theme.ink if force.kind == "inertia" else getattr(sheet.theme, force.kind)
+        colour = sheet.theme.ink if force.kind == "inertia" else sheet.colour_of(force.kind)
         of = ("loads", force.load) if force.load >= 0 else ("particles", row)
         part = f"particles.{force.name}", np.array([row])
         draw_arrows(sheet, [of], tail[None], out[None], np.array([length]), colour, part)

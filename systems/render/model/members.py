@@ -172,7 +172,7 @@ def _draw_moments(sheet: Sheet, name: str, moment: Values) -> None:
     radius = sheet.radii[rows] + (_ARC[name] - 4.0) * sheet.unit
     sheet.arcs[rows] = np.maximum(sheet.arcs[rows], radius)
     key = "particles.applied_moment" if name == "load" else "particles.reaction_moment"
-    colour, of = getattr(sheet.theme, name), ("particles", rows)
+    colour, of = sheet.colour_of(name), ("particles", rows)
     draw_arcs(sheet, of, sheet.centres[rows], radius, moment[rows], colour, key)
     sheet.explain(f"{name} moment", sheet.centres[rows], sheet.centres[rows])
     for at, size, row, value in zip(

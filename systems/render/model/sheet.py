@@ -21,7 +21,7 @@ from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels.occupancy import Occupancy
 from pinjoint.systems.render.labels.placing import Label, Placed
 from pinjoint.systems.render.marks import Mark, Points, Rows, Truths, Values
-from pinjoint.systems.render.theme import Colour, Theme
+from pinjoint.systems.render.theme import Colour, Theme, pale
 from pinjoint.systems.render.typography import font_size
 
 Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
@@ -89,6 +89,11 @@ class Sheet:
     def arcs(self) -> Values:
         """The radius in pixels of the arrow of a moment around each particle, where one is drawn; else 0."""
         return np.zeros(len(self.centres))
+
+    def colour_of(self, name: str) -> Colour:
+        """The colour of loads and results: of these, pale where what is shown is no equilibrium."""
+        found: Colour = getattr(self.theme, name)
+        return found if name == "load" or not self.view.provisional else pale(found, self.theme.background)
 
     @property
     def viewport(self) -> Viewport:

@@ -135,6 +135,8 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
         sides = (v.width, thin), (thin, v.height)
         paper.marks += [Panel(v.left, v.top, *size, 0.0, theme.line) for size in sides]
         looks[0] = looks[0][0], "semibold", theme.text
+    if sheet.view.provisional and not _RESULTS.isdisjoint(sheet.legend):
+        looks.append((sheet.view.provisional, "semibold", theme.halted))
     if shape is not None:
         looks.append((shape.title, "semibold", theme.sketch))
     if not looks:
@@ -229,6 +231,7 @@ def _progress(sheet: Sheet, left: float, top: float, width: float) -> list[Mark]
 # --- legend ----------------------------------------------------------------------------------------
 
 _BAR_WIDTH = 70.0  # points, of a scale of colours
+_RESULTS = {"tension", "compression", "moment", "shear", "reaction", "reaction moment", "utilisation"}
 _ABOVE, _PAD, _BETWEEN = 10.0, 9.0, 14.0  # points: to the edges, inside a row, between its entries
 MEANINGS = {
     "tension": marked("tension (kN)"),

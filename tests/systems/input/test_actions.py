@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from pinjoint import Session
+from pinjoint.components.settings import PAUSE, STATICS
 from pinjoint.components.tags import DiagramShown
 from pinjoint.documents.library import DATA_VARIABLE, models_folder
 from pinjoint.editor.scenes.force_method import ForceMethod
@@ -17,7 +18,6 @@ from pinjoint.systems.input.actions import (
     FORCE_METHOD,
     LOAD,
     MENU,
-    PAUSE,
     PROPERTIES,
     SAVE,
     SIMULATION,
@@ -77,7 +77,15 @@ def in_scene(scene: str) -> Session:
     session.run(steps=300)
     session.select(session.particles["B"])
     session.point(*session.particles["B"].position)
-    keys = {SIMULATION: "space", PROPERTIES: "return", SAVE: "s", LOAD: "d", FORCE_METHOD: "k", MENU: "menu"}
+    keys = {
+        SIMULATION: "space",
+        STATICS: "q",
+        PROPERTIES: "return",
+        SAVE: "s",
+        LOAD: "d",
+        FORCE_METHOD: "k",
+        MENU: "menu",
+    }
     if scene in keys:
         session.press(keys[scene])
     assert scene == MENU or session.scene == scene
@@ -186,6 +194,7 @@ PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
     ("natural pace", PAUSE): lambda session: session.press("+"),
     ("natural pace", SIMULATION): lambda session: session.press("+"),
     ("next grid", PAUSE): _grids,
+    ("select", STATICS): lambda session: session.select(),
     ("pick unknown", FORCE_METHOD): _over_a_rod,
     ("release x", FORCE_METHOD): _support_of_d,
     ("release y", FORCE_METHOD): _support_of_d,

@@ -1,0 +1,174 @@
+"""Statics of a document: the equilibrium from its undeformed beginning, found anew when it is read after an edit.
+
+It lies beside the model, whose state it does not touch. While a model shows it (`World.show`), all columns of forces,
+displacements and reactions are its own, so that pictures, panels, tables and scripts read it by no way of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pinjoint.components.field import Column, Role
+from pinjoint.components.language import joined, marked, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import nodes
+from pinjoint.components.theory import EXACT, FIRST_ORDER
+
+if TYPE_CHECKING:  # it imports scipy
+    from pinjoint.systems.statics.settle import Settlement
+
+SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
+MOST_COMPARED = 300  # rods, up to which both theories take a moment only
+_CHOICES = "theory", "load_steps"  # of the settings
+_MOVED = "displacement", "rotation"  # of constrained directions: settled supports
+
+
+class Statics:
+    """The static solution of a model: a function of its document, by the theory and load steps of its settings.
+
+    strain: the plastic strain of its undeformed beginning. settlement: the way through the load steps; None where none
+    can be computed, which `problem` explains. revision: at which it was found. offered: that of which a person was told
+    that it would not move.
+    """
+
+    def __init__(self, model: Model, strain: Callable[[], Column]) -> None:
+        self._model, self._strain = model, strain
+        self._of: tuple[object, ...] = ()
+        self._columns: Mapping[str, Column] = {}
+        self._settlement: Settlement | None = None
+        self.problem = ""
+        self.revision, self.offered = 0, -1
+        self._compared = -1, ""  # the revision of which the theories were compared, and what is said of them
+
+    @property
+    def settlement(self) -> Settlement | None:
+        """The way through the load steps, up to date; None where `problem` says why there is none."""
+        self.solve()
+        return self._settlement
+
+    @property
+    def columns(self) -> Mapping[str, Column]:
+        """What columns of the model show, by "table.field", up to date."""
+        self.solve()
+        return self._columns
+
+    @property
+    def first_order(self) -> bool:
+        """True by first-order theory."""
+        return self._model.settings.theory == FIRST_ORDER
+
+    @property
+    def share(self) -> float:
+        """The load factor of what is shown."""
+        settlement = self.settlement
+        return settlement.final.load_factor if settlement is not None else 1.0
+
+    @property
+    def balanced(self) -> bool:
+        """True if what is shown is an equilibrium under the last load step."""
+        settlement = self.settlement
+        return settlement is not None and settlement.final.balanced
+
+    @property
+    def said(self) -> str:
+        """The state of what is shown in a few words, in English."""
+        settlement = self.settlement
+        if settlement is None:
+            return marked("no solution")
+        return SAID[self._model.settings.theory] if settlement.status == "equilibrium" else settlement.status
+
+    @property
+    def message(self) -> str:
+        """What there is to say about it: why there is no solution, what happened on the way, what is left out."""
+        settlement = self.settlement
+        if settlement is None:
+            return self.problem
+        told = "" if settlement.status == "equilibrium" and not settlement.events else settlement.account
+        return joined([told, *self._left_out()])
+
+    def _left_out(self) -> list[str]:
+        model = self._model
+        moving = bool(model.particles.count and model.tables["particles"].storage("velocity").any())
+        loose = np.flatnonzero(~nodes(model))
+        return [
+            tr("Statics leaves out velocities.") if moving and model.rods.count else "",
+            plural(
+                "Statics leaves out {name}, which has no rods.",
+                "Statics leaves out {count} particles without rods.",
+                len(loose),
+                name=model.particles.names[loose[0]],
+            )
+            if len(loose) and model.rods.count
+            else "",
+        ]
+
+    # --- finding -------------------------------------------------------------------------------------
+
+    def solve(self) -> None:
+        """Solve anew if the document changed."""
+        model = self._model
+        settings, particles = model.tables["settings"], model.tables["particles"]
+        wanted = (
+            model.newest(Role.DOCUMENT),
+            model.structure,
+            *(settings.version(name) for name in _CHOICES),
+            *(particles.version(name) for name in _MOVED),
+        )
+        if wanted == self._of:
+            return
+        self._of = wanted
+        with model.own_state():
+            self._find()
+        self.revision = model.next_revision()
+
+    def settled(
+        self, theory: str | None = None, load_factors: Sequence[float] | float | None = None
+    ) -> Settlement:
+        """The way through load factors by a theory; None: those of the settings. Raises ValueError."""
+        from pinjoint.systems.statics.settle import settle
+        from pinjoint.systems.statics.state import Start
+
+        model, settings = self._model, self._model.settings
+        factors = settings.load_steps if load_factors is None else load_factors
+        with model.own_state():
+            start = Start.undeformed(model, self._strain())
+            return settle(model, factors, theory or settings.theory, start)
+
+    @property
+    def second_order(self) -> str:
+        """By how much, and where, the theories differ, where that is worth a word; "" of a large structure."""
+        settlement = self.settlement
+        if settlement is None or not settlement.final.balanced or self._model.rods.count > MOST_COMPARED:
+            return ""
+        if self._compared[0] != self.revision:
+            from pinjoint.systems.statics.second_order import SecondOrder
+
+            other = self.settled(EXACT if self.first_order else FIRST_ORDER)
+            both = (settlement, other) if self.first_order else (other, settlement)
+            found = None
+            if other.final.balanced:
+                found = SecondOrder.of(self._model, *(one.final for one in both))
+            told = tr("exact: {status}", status=tr(other.status)) if self.first_order else ""
+            said = found.said if found is not None else "" if other.final.balanced else told
+            self._compared = self.revision, said
+        return self._compared[1]
+
+    def _find(self) -> None:
+        from pinjoint.systems.statics.external import External
+
+        model = self._model
+        try:
+            self._settlement, self.problem = self.settled(), ""
+        except ValueError as error:
+            self._settlement, self.problem = None, str(error)
+            self._columns = {}
+            return
+        final = self._settlement.final
+        acting = External.of(model).at(final.load_factor)
+        self._columns = final.columns | {
+            "particles.applied_force": acting[:, :2],
+            "particles.applied_moment": acting[:, 2] if acting.shape[1] > 2 else np.zeros(len(acting)),
+        }

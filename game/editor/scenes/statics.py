@@ -1,0 +1,50 @@
+"""Statics: the mode in which the equilibrium of the structure is shown, solved anew after every edit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pinjoint.components.bent import MOMENT
+from pinjoint.components.language import marked, tr
+from pinjoint.components.model import Model
+from pinjoint.components.tags import DiagramShown
+from pinjoint.editor.context import Context, Scene
+from pinjoint.systems.base import Phase, System
+
+
+class Statics(Scene):
+    """The equilibrium under the load, by first-order or exact theory: a function of the document, beside its state."""
+
+    name = "statics"
+    heading = marked("Statics")
+    targets = ("pause", "simulation", "properties", "save", "load", "force method")
+
+    def enter(self, context: Context) -> None:
+        """Show the diagrams of all elements, unless some are shown."""
+        view = context.view
+        if not (view.all_diagrams or context.model.any_tagged(DiagramShown)):
+            view.all_diagrams, view.quantity = True, MOMENT
+
+    def hint(self, context: Context) -> str:
+        if context.model.particles.count == 0:
+            return tr("click a tool, then the canvas     right click menu     F1 help")
+        return tr("click select     I diagrams N, M, V     Z theory     Space run     Q pause     F1 help")
+
+
+class Solve(System):
+    """Finds the static equilibrium of what was edited in the frame."""
+
+    name = "statics.solve"
+    phase = Phase.EDIT
+    after = ("edit.actions",)
+    scenes = ("statics", "properties")
+    reads = ("document", "scene")
+    writes = ("solution",)
+    unneeded = marked("the model has no rods")
+
+    def needs(self, model: Model) -> bool:
+        return model.solution is not None and bool(model.rods.count)
+
+    def process(self, frame: Any) -> None:
+        """Solve, if anything changed."""
+        frame.session.document.statics.solve()

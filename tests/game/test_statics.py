@@ -1,0 +1,162 @@
+"""Statics: what is shown is the equilibrium of what is there, beside the state, which nothing of it touches."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pinjoint.components.model import Model
+from pinjoint.documents.document import document
+from pinjoint.documents.models import load
+from pinjoint.session import Session
+from pinjoint.systems.base import Phase
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.state import Start
+from tests.reference import bits
+
+GERBER: dict[str, Any] = {  # 3 m + 2 m to the hinge, 3 m, q = 12 kN/m
+    "format": "pinjoint model",
+    "version": 1,
+    "particles": [
+        {"name": "A", "position": [0, 0], "fixed": [True, True]},
+        {"name": "B", "position": [3, 0], "fixed": [False, True]},
+        {"name": "H", "position": [5, 0]},
+        {"name": "C", "position": [8, 0], "fixed": [False, True]},
+    ],
+    "rods": [
+        {"name": name, "between": list(name), "section": "IPE 200", "distributed_force": [0, -12]}
+        for name in ("AB", "BH", "HC")
+    ],
+}
+GERBER["rods"][2]["hinged"] = [True, False]
+
+
+def shown(source: Any) -> Session:
+    session = Session.open(source)
+    session.press("q")
+    assert session.scene == "statics"
+    return session
+
+
+def alone(model: Model, theory: str) -> dict[str, Any]:
+    """The columns of the equilibrium of a model's document, read into another model."""
+    fresh = load(document(model))
+    start = Start.undeformed(fresh, np.zeros(fresh.rods.count))
+    return settle(fresh, fresh.settings.load_steps, theory, start).final.columns
+
+
+def assert_is_solution(session: Session, theory: str) -> None:
+    for name, wanted in alone(session.model, theory).items():
+        np.testing.assert_array_equal(session.model.column(name), wanted, err_msg=name)
+
+
+def test_a_gerber_beam_shows_what_a_hand_calculates() -> None:
+    """M_B = −(q·2²/2 + 2·q·3/2) = −60 kN·m; H carries q·3/2 = 18 kN; A: 18 − 60/3 = −2 kN."""
+    session = shown(GERBER)
+    assert session.rods["AB"].bending_moment[1] == pytest.approx(-60.0, rel=1e-12)
+    assert session.rods["HC"].bending_moment[0] == 0.0
+    assert session.rods["HC"].largest_moment == pytest.approx((13.5, 1.5), rel=1e-12)
+    reactions = [session.particles[name].reaction[1] for name in "ABC"]
+    assert reactions == pytest.approx([-2.0, 80.0, 18.0], rel=1e-11)
+
+
+@pytest.mark.parametrize("name", ["portal", "three_bar_plastic", "braced_portal", "isostatic"])
+def test_the_state_stays_as_it_is(name: str) -> None:
+    session = Session.open(name)
+    before, saved = bits.columns(session.model), document(session.model)
+    session.press("q")
+    session.frame(0.02)
+    assert session.model.rods.axial_force.any()
+    assert document(session.model) == saved
+    session.press("z")
+    assert_is_solution(session, "exact")
+    session.press("z")
+    session.press("q")
+    assert session.scene == "pause"
+    different = bits.different(bits.columns(session.model), before)
+    assert different == []
+    assert session.undo() != ""  # the theory, twice
+    assert session.undo() != ""
+    assert not session.document.history.can_undo
+
+
+def test_edits_undo_and_redo_are_followed() -> None:
+    session = shown("portal")
+    session.particles["B"].force = (10.0, 0.0)
+    assert_is_solution(session, "first-order")
+    session.rods["AB"].hinged = (True, False)
+    assert_is_solution(session, "first-order")
+    session.model.delete([session.rods["CD"]])
+    assert_is_solution(session, "first-order")
+    for _ in range(3):
+        session.undo()
+        assert_is_solution(session, "first-order")
+    session.redo()
+    assert_is_solution(session, "first-order")
+    session.model.settings.load_steps = [1.0, 0.5]
+    assert_is_solution(session, "first-order")
+    session.divide("BC", 2)
+    assert_is_solution(session, "first-order")
+    assert session.particles[-1].position[1] == 4.0  # on the undeformed axis, not where it is drawn
+
+
+def test_a_run_is_not_changed_by_a_look_at_statics() -> None:
+    one, other = Session.open("portal"), Session.open("portal")
+    for session in (one, other):
+        session.run(steps=20)
+    other.press("q")
+    other.frame(0.02)
+    other.press("q")
+    for session in (one, other):
+        session.run(steps=20)
+    assert bits.different(bits.columns(one.model), bits.columns(other.model)) == []
+
+
+def test_what_moves_in_no_equilibrium_says_so() -> None:
+    session = Session.open("isostatic")
+    session.model.delete([session.rods["AB"]])
+    session.press("q")
+    session.update_view()
+    assert session.view.provisional == "mechanism"
+    assert session.view.status.state == "mechanism"
+    assert "Mechanism: the load moves" in session.view.status.notice
+    session.press("space")  # which it does
+    assert session.scene == "simulation"
+
+
+def test_space_offers_to_begin_undeformed_and_then_does() -> None:
+    session = shown("two_storey_frame")
+    session.press("space")
+    assert session.scene == "statics"
+    assert "Space again" in session.notice
+    session.press("space")
+    assert session.scene == "simulation"
+    assert session.model.solution is None
+
+
+def test_panels_lead_back_to_statics() -> None:
+    session = shown("portal")
+    for key, scene in (("return", "properties"), ("s", "save"), ("d", "load"), ("k", "force method")):
+        session.press(key)
+        assert session.scene == scene
+        for _ in range(3):
+            if session.scene != "statics":
+                session.press("escape")
+        assert session.scene == "statics"
+
+
+def test_no_time_passes() -> None:
+    session = shown("portal")
+    plan = session.plan()
+    assert plan.phases[Phase.STEP] == ()
+    assert "statics.solve" in [system.name for system in plan.phases[Phase.EDIT]]
+    session.press(".")
+    assert "no time passes" in session.notice
+    session.run(steps=1)  # which leaves it
+    assert session.scene == "pause"
+
+
+def test_what_is_asked_of_load_steps_is_checked() -> None:
+    session = Session.open("portal")
+    with pytest.raises(ValueError, match=r"load steps are \[\]; give a list of one to"):
+        session.model.settings.load_steps = []
