@@ -105,7 +105,7 @@ class Buckling:
             dead,
             live,
             np.where(taking, _effective_length(model, lowest), np.nan),
-            np.bincount(member, model.rods.rest_length)[member],
+            np.bincount(member, model.rods.rest_length)[member].astype(np.float64),
             leading,
             np.array([length[row] for length, row in zip(lengths, leading, strict=True)]),
             tuple(_notes(model, factors, lowest)),
