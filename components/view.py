@@ -224,6 +224,7 @@ class View:
     menu: the list of what can be done somewhere, while it is open.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     convention: of the force method. has_scale: a length to scale, and notes about what is hidden, are shown.
+    advises: they may say what to do, as in a window.
     pointed: what is said of the element under the pointer, beside it.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption. swing: the share of it, from
     1 to −1, that is drawn now.
@@ -264,6 +265,7 @@ class View:
     theme: str = "light"
     convention: str = TEXTBOOK
     has_scale: bool = True
+    advises: bool = True
     readouts: tuple[Readout, ...] = ()
     since: dict[str, int] = field(default_factory=dict)
     largest_force: float = 0.0

@@ -59,6 +59,7 @@ def on_paper(view: View, camera: Camera | None = None) -> View:
         pointer=None,
         pointed=None,
         help=0,
+        advises=False,
     )
 
 
@@ -116,7 +117,7 @@ def frame(
     status = replace(session.view.status, hint="")  # a picture takes no keys
     camera = Camera(viewport=Viewport(0, 0, *size))
     view = replace(session.view, camera=camera, toolbar=Toolbar(), sliders=SliderStack(), status=status)
-    view.heading = ""
+    view.heading, view.advises = "", False
     view.camera.fit(around, MARGIN, view.room, view.pixel_ratio)
     return as_colours([compose(session.model, view, load_theme(theme), placed)], size)
 

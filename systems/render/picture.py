@@ -44,6 +44,7 @@ from pinjoint.systems.render.ui.lesson_card import compose_lesson
 from pinjoint.systems.render.ui.overlays import (
     draw_notice,
     draw_overlays,
+    draw_references,
     draw_scale,
     place_scale,
     taken_by_heading,
@@ -169,8 +170,9 @@ def _composed(sheet: Sheet) -> Picture:
     scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
     put_controls(paper, model, sheet.view, theme)
     preview = draw_preview(sheet)
-    labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
+    labels, referred = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
     over = [
+        *draw_references(sheet, referred),
         *draw_scale(sheet, scale),
         *draw_flashes(sheet),
         *preview,

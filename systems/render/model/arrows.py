@@ -270,7 +270,7 @@ def _thinned(sheet: Sheet, rows: Rows, force: Values, index: Rows, axis: Rows) -
     first[1:] = (np.diff(x) != 0) | (np.diff(y) != 0) | (np.diff(along) != 0)
     kept = np.sort(order[first])
     if len(kept) < len(order):
-        sheet.notes.append(tr("zoom in to see all loads and reactions"))
+        sheet.advise(tr("zoom in to see all loads and reactions"))
     return index[kept], axis[kept]
 
 
@@ -322,9 +322,20 @@ def _write_forces(
     half, start, end = half_sizes(sheet, texts, font), start[shown], end[shown]
     places = by_arrows(half, start, end, _BY_ARROW * sheet.unit)
     out = (end - start) / np.hypot(*(end - start).T)[:, None]
+    lines = np.stack([end, 0.5 * (start + end), start], axis=1)
     colour, ranks = getattr(sheet.theme, name), (FIRST - worth).tolist()
     for k, index in enumerate(shown.tolist()):
-        key, leads = (field, int(which[index])), (end[k, None], out[k])
+        key, leads = (field, int(which[index])), (lines[k], out[k])
         write(
-            sheet, texts[k], places[k], colour, key, of[index], rank=ranks[k], own=key, leads=leads, size=font
+            sheet,
+            texts[k],
+            places[k],
+            colour,
+            key,
+            of[index],
+            rank=ranks[k],
+            own=key,
+            leads=leads,
+            size=font,
+            short=texts[k] if few and name == "reaction" else "",
         )

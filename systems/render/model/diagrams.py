@@ -31,6 +31,7 @@ from pinjoint.systems.render.model.values import (
     half_sizes,
     most_important,
     reach,
+    room_for_values,
     said,
     write,
 )
@@ -77,6 +78,17 @@ _SLIDES = (
 )  # between ends, and at one
 _GAP = 1.0  # points between a rod and a value beside it
 _NEAR = 42.0  # points along a rod, or two steps: so far from its end stands a value, but for the last place
+_INSETS = (
+    (0.0, 0.0),
+    (6.0, 6.0),
+    (12.0, -6.0),
+    (18.0, 12.0),
+    (25.0, -12.0),
+    (33.0, 18.0),
+)  # points from an end, and along from a value between, of places where its line may end
+_ON_RODS = np.array(
+    [0.5, 0.35, 0.65, 0.2, 0.8, 0.28, 0.72, 0.12, 0.88, 0.43, 0.57]
+)  # shares, where the lines may end, too
 _PLACES = 3  # of values of a rod: start, end, between
 
 
@@ -134,7 +146,7 @@ def draw_diagrams(sheet: Sheet, taken: float = 0.0) -> None:
     if typical_length(start, end) < _SHORTEST * sheet.unit:
         if quantity == AXIAL:
             sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST], rows[force[rows] < -SMALLEST]
-        sheet.notes.append(tr("zoom in to see force diagrams"))
+        sheet.advise(tr("zoom in to see force diagrams"))
         return
     window = min(sheet.viewport.width, sheet.viewport.height)  # what leaves the structure readable:
     room = max(min(0.15 * window, 0.6 * typical_length(start, end)), 10.0 * sheet.unit)
@@ -382,7 +394,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
         diagram = diagram.some(seen)
         diagram = replace(diagram, base=replace(diagram.base, start=start, end=end))
     selected = sheet.chosen(sheet.tagged(Selected, "rods"), diagram.rows)
-    if sheet.rod_length < _SHORTEST_WITH_VALUE * sheet.unit:
+    if sheet.rod_length < _SHORTEST_WITH_VALUE * sheet.unit and len(diagram.rows) > room_for_values(sheet):
         sheet.values[field] += int((~selected).sum())
         diagram, selected = diagram.some(selected), selected[selected]
     which, number, shares, value = _told(sheet, diagram)
@@ -393,7 +405,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
     shown, worth = most_important(sheet, field, keys, value, seen, np.where(selected, 1e6, 0.0))
     if not len(shown):
         return
-    few = len(seen) <= FEW_VALUES
+    few, told = len(seen) <= FEW_VALUES, len(seen) == len(shown)
     size, which, number, value = sheet.font(12.0 if few else 11.0), which[shown], number[shown], value[shown]
     nothing = SMALLEST if diagram.is_straight else max(_NOTHING * diagram.largest, SMALLEST)
     texts = [_written(sheet, quantity, each, nothing, few) for each in value.tolist()]
@@ -406,19 +418,34 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
     if diagram.is_straight:
         way = (diagram.base.end - diagram.base.start)[which]
         places = _places_by_rectangles(at, normal, height, half, np.hypot(*way.T), sheet.unit)
-        anchors = edge[:, None] + (ANCHORS[:, None] - 0.5) * way[:, None]
+        edges = edge[:, None] + (ANCHORS[:, None] - 0.5) * way[:, None]
+        anchors = np.concatenate([edges, at[:, None] + (_ON_RODS[:, None] - 0.5) * way[:, None]], axis=1)
     else:
         inward = np.array([1.0, -1.0, 0.0])[number]
         places = _places_by_curves(at, normal, along, height, inward, half, sheet.unit)
-        anchors = np.stack([edge, at + normal * (0.5 * height)[:, None], at], axis=1)
+        anchors = _ends_of_lines(sheet, diagram, which, shares[shown], number)
         worth = worth + np.where(np.abs(value) > _GREAT * diagram.largest, 2e9, 0.0)  # before arrows
     for k, row in enumerate(diagram.rows[which].tolist()):
         of, key, rank = ("rods", row), (field, int(keys[shown[k]])), -float(worth[k])
         sign = "zero" if abs(value[k]) <= SMALLEST else "tension" if value[k] > 0.0 else "compression"
         colour = _colour(sheet, sign) if quantity == AXIAL else sheet.theme.text
-        leads = anchors[k], normal[k]
+        leads, short = (
+            (anchors[k], normal[k]),
+            _written(sheet, quantity, float(value[k]), nothing, few=False) if told else "",
+        )
         write(
-            sheet, texts[k], places[k], colour, key, of, rank=rank, own=of, leads=leads, size=size, lines=lines
+            sheet,
+            texts[k],
+            places[k],
+            colour,
+            key,
+            of,
+            rank=rank,
+            own=of,
+            leads=leads,
+            size=size,
+            lines=lines,
+            short=short,
         )
 
 
@@ -493,6 +520,21 @@ def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values, largest: float) -> 
     repeated.ravel()[other] = True
     repeated.ravel()[one[straight & (slope[one] * slope[other] < 0.0)]] = True  # the moment passes through
     return repeated
+
+
+def _ends_of_lines(sheet: Sheet, diagram: _Diagram, which: Rows, shares: Values, ends: Rows) -> Points:
+    """Where lines from values may end, (n, k, 2): on the edge of the diagram, in it, on the rod, then the same further along
+    it, off the joint, where others begin, too."""
+    length = np.hypot(*(diagram.base.end - diagram.base.start)[which].T)
+    found = []
+    for from_end, between in _INSETS:
+        inset = np.array([from_end, -from_end, between])[ends] * sheet.unit / np.maximum(length, 1e-9)
+        along = shares + np.clip(inset, -0.4, 0.4)
+        along = np.clip(along, 0.0, 1.0)
+        at, normal = diagram.at(which, along)
+        height = diagram.scale * values(diagram.polynomials[which], along[:, None])
+        found += [at + share * height * normal for share in (1.0, 0.0, 0.5)]
+    return np.stack(found, axis=1)
 
 
 def _places_by_rectangles(

@@ -39,13 +39,13 @@ def draw_free_bodies(sheet: Sheet) -> None:
     force = known.pull
     long = np.hypot(*(sheet.end - sheet.start).T) >= SHORTEST * sheet.unit
     if len(sheet.rods) > MOST or not long.any():
-        sheet.notes.append(tr("zoom in to see free bodies"))
+        sheet.advise(tr("zoom in to see free bodies"))
         sheet.marks.append(
             Strokes(sheet.start, sheet.end, 2.0 * sheet.unit, sheet.theme.ink, ("rods", sheet.rods))
         )
         return
     if not long.all():
-        sheet.notes.append(tr("zoom in to see short rods as free bodies, too"))
+        sheet.advise(tr("zoom in to see short rods as free bodies, too"))
     acting = sheet.model.particles.applied_force, sheet.model.particles.reaction, force
     largest = max(SMALLEST, *(float(np.abs(values).max(initial=0.0)) for values in acting))
     _draw_rods(sheet, known, long, largest)

@@ -141,7 +141,7 @@ def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float
     at = shares * (len(tails) - 1.0)
     anchors = np.stack([np.interp(at, np.arange(len(tails)), part) for part in tails.T], axis=1)
     key, rank = ("rods.distributed_force", row), FIRST - size
-    write(sheet, text, places, sheet.theme.load, key, of, rank=rank, own=of, leads=(anchors, out))
+    write(sheet, text, places, sheet.theme.load, key, of, rank=rank, own=of, leads=(anchors, out), short=text)
 
 
 # --- moments -----------------------------------------------------------------------------------------
@@ -237,4 +237,15 @@ def write_moment(
     near = off(at, out, radius + 2.0 * sheet.unit, half_sizes(sheet, [text]))
     places, of = np.concatenate([near, near + 8.0 * sheet.unit * out]), ("particles", key[1])
     anchors, rank = at + radius * out[:5], FIRST - abs(moment)
-    write(sheet, text, places, colour, key, of, rank=rank, own=key, leads=(anchors, out[0]))
+    write(
+        sheet,
+        text,
+        places,
+        colour,
+        key,
+        of,
+        rank=rank,
+        own=key,
+        leads=(anchors, out[0]),
+        short=text if key[0] == "particles.reaction_moment" else "",
+    )

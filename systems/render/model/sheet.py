@@ -137,6 +137,11 @@ class Sheet:
             if seen or len(clip_segments(start, end, *self.viewport.corners)[2]):
                 self.legend.append(name)
 
+    def advise(self, said: str) -> None:
+        """Add a note about what to do, which no picture in a file has."""
+        if self.view.advises:
+            self.notes.append(said)
+
     def tagged(self, tag: type, table: str) -> Rows:
         """Rows of the entities of one table that carry a tag; nothing is pointed at in a picture without a pointer."""
         if tag is Hovered and self.view.pointer is None:

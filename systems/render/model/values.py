@@ -18,6 +18,7 @@ FEW_VALUES = 24  # values up to which each carries its unit and keeps clear of r
 BACKING = 0.86  # opacity behind a value
 FIRST = -1e9  # rank of values of arrows, which are few and say little without them: before those of rods
 _KEPT = 1.5  # factor by which a new value must be larger to replace one of the last picture
+_ALL_TOLD = 60  # values that are told in any picture
 _MOST_COVERED = 0.15  # of a picture, by values
 
 
@@ -76,11 +77,15 @@ def most_important(
     decade = 10.0 ** np.floor(np.log10(size))
     kept = np.array([row for name, row in sheet.placed if name == field], dtype=np.intp)
     worth: Values = np.round(size / decade, 1) * decade * np.where(sheet.chosen(kept, rows), _KEPT, 1.0) + more
-    area = sheet.viewport.width * sheet.viewport.height / sheet.unit**2
-    most = int(_MOST_COVERED * area / (46.0 * 18.0))
-    shown = np.sort(seen[np.lexsort((seen, -worth[seen]))][:most])
+    shown = np.sort(seen[np.lexsort((seen, -worth[seen]))][: room_for_values(sheet)])
     sheet.values[field] += len(seen) - len(shown)
     return shown, worth[shown]
+
+
+def room_for_values(sheet: Sheet) -> int:
+    """How many values there may be room for in a picture."""
+    area = sheet.viewport.width * sheet.viewport.height / sheet.unit**2
+    return max(int(_MOST_COVERED * area / (46.0 * 18.0)), _ALL_TOLD)
 
 
 def write(
@@ -96,9 +101,10 @@ def write(
     leads: tuple[Points, Points] | None = None,
     size: int = 0,
     lines: Literal["cover", "spare", "avoid"] = "spare",
+    short: str = "",
 ) -> None:
     """Add a value to the labels of a picture, see there. leads: its anchors, and which way it had best stand from them."""
     font, backing = size or sheet.font(12.0), faded(sheet.theme.background, BACKING)
-    label = Label(text, places, font, colour, rank, "semibold", backing, lines, key, of, own)
+    label = Label(text, places, font, colour, rank, "semibold", backing, lines, key, of, own, short=short)
     sheet.labels.append(label._replace(anchors=leads[0], outward=leads[1]) if leads else label)
     sheet.values[key[0]] += 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import product
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.view import BETWEEN, LEAST_MODEL
 from pinjoint.systems.render import marks
+from pinjoint.systems.render.labels.occupancy import STRONG
+from pinjoint.systems.render.labels.placing import Numbered, Placed
 from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes
 from pinjoint.systems.render.model.diagrams import EXPLAINED
 from pinjoint.systems.render.model.sheet import Sheet
@@ -31,6 +34,7 @@ _NOISE = 1e-6  # pixels; smaller displacements count as none
 BAR = 28.0  # points, height of the status bar
 _ROW, _ROWS_BESIDE = 28.0, 2  # of the legend: points, and how many stand beside the heading
 _STRIP = 19.0  # points, height of the scale
+_TALL = 8, 12, 16, 24, 5, 3, 2, 1  # rows of numbered values, where they find room
 _SCALE = ("scale", 0)  # the key by which its place is kept
 
 
@@ -349,7 +353,7 @@ def place_scale(sheet: Sheet, room: tuple[float, float]) -> tuple[Rectangle, flo
 
     There is room for how many values are hidden, before that is known; this is said alone, and over rods, in need.
     """
-    v, u, values = sheet.viewport, sheet.unit, sheet.values.total()
+    v, u, values = sheet.viewport, sheet.unit, _hidden_values(sheet, {})
     length = round_down(min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale)
     notes = _displacements(sheet) + sheet.notes
     for metres, said in ((length, notes), (0.0, notes), *([(0.0, list[str]())] if values else [])):
@@ -369,11 +373,18 @@ def draw_scale(sheet: Sheet, scale: tuple[Rectangle, float, list[str]] | None) -
     if scale is None:
         return []
     place, metres, notes = scale
-    hidden = sheet.values.total() - sum(1 for field, _ in sheet.placed if field in sheet.values)
-    whole, paper = _scale(sheet, metres, hidden, notes), Paper(sheet.unit)
+    whole, paper = _scale(sheet, metres, _hidden_values(sheet, sheet.placed), notes), Paper(sheet.unit)
     if whole is not None:
         paper.put(whole, replace(place, width=min(whole.width(sheet.unit), place.width)))
     return paper.marks
+
+
+def _hidden_values(sheet: Sheet, placed: Placed) -> int:
+    """How many values there are beside those that are placed, but for loads, which a person gave; 0 in a file."""
+    if not sheet.view.advises:
+        return 0
+    fields = {field for field in sheet.values if not field.startswith("particles.applied")}
+    return sum(sheet.values[field] for field in fields) - sum(field in fields for field, _ in placed)
 
 
 def _scale(sheet: Sheet, metres: float, hidden: int, notes: list[str]) -> Plate | None:
@@ -387,6 +398,35 @@ def _scale(sheet: Sheet, metres: float, hidden: int, notes: list[str]) -> Plate 
     text = Text("   ".join(said), 11.0, theme.muted, grow=1.0)
     row = Row((*([ruler] if metres else []), text), 8.0, (6.0, 0.0, 0.0), high=_STRIP)
     return Plate(row, faded(theme.background, 0.8), radius=4.0)
+
+
+def draw_references(sheet: Sheet, values: Sequence[Numbered]) -> list[Mark]:
+    """Numbers that stand for values, and these in columns that cover no text; neither where there is no room."""
+    if not values:
+        return []
+    lines, occupancy, u = [], sheet.occupancy, sheet.unit
+    for number, label, _ in values:
+        table, row = label.of or ("rods", 0)
+        name = Text(str(number or sheet.model.tables[table].names[row]), 9.0, label.colour, grow=1.0)
+        lines.append(Row((name, Text(label.short, 9.0, label.colour, "semibold")), 6.0))
+    (left, top), (right, bottom) = sheet.viewport.corners
+    for covered, rows in product((0, STRONG), _TALL):
+        columns = [Column(lines[at : at + rows]) for at in range(0, len(lines), rows)]
+        inside = Row(columns, 10.0, (6.0, 3.0, 3.0), top=True)
+        block = Plate(inside, faded(sheet.theme.background, 0.9), sheet.theme.line, radius=4.0)
+        size = np.array([width := block.width(u), block.height(u, width)])
+        x = np.arange(left + 6.0 * u, right - size[0], 6.0 * u)
+        y = np.arange(bottom - 6.0 * u - size[1], top, -6.0 * u)
+        corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        cells = occupancy.cells_of(corners, np.broadcast_to(size, corners.shape))
+        free = np.flatnonzero(occupancy.are_free(cells, covered))
+        if len(free):
+            paper = Paper(u)
+            paper.put(block, Rectangle(*corners[free[0]].tolist(), *size.tolist()))
+            return [*(mark for *_, own in values for mark in own), *paper.marks]
+    for _, label, _ in values:
+        sheet.placed.pop(label.key or ("", 0), None)
+    return []
 
 
 def _ruler(theme: Theme, at: Rectangle, u: float) -> list[Mark]:
@@ -425,7 +465,7 @@ def _displacements(sheet: Sheet) -> list[str]:
     if scale != 1.0:
         return [] if sheet.view.slider_places else [tr("displacements ×{scale:g}", scale=scale)]
     largest = float(np.abs(model.particles.displacement).max(initial=0.0)) if model.rods.count else 0.0
-    if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
+    if not sheet.view.advises or not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
         return []
     return [
         tr(

@@ -18,6 +18,7 @@ from pinjoint.systems.render.labels.occupancy import FAINT, STRONG, Occupancy
 from pinjoint.systems.render.labels.placing import Label, Placed, place_labels
 from pinjoint.systems.render.marks import Panel, Text
 from pinjoint.systems.render.picture import compose
+from tests.benchmarks.models import mesh
 from tests.reference.boxes import overlapping, text_boxes
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
@@ -70,14 +71,14 @@ def test_values_lie_clear_of_one_anothers_backing() -> None:
 
 
 def test_without_room_the_largest_values_and_what_is_selected_come_first() -> None:
-    model = random_model(5, 20, 60)
-    forces = np.linspace(1.0, 200.0, 60)
+    model = random_model(0, 60, 150)
+    forces = np.linspace(1.0, 200.0, 150)
     fill(model, "rods.axial_force", forces)
-    fill(model, "particles.applied_force", np.zeros((20, 2)))
+    fill(model, "particles.applied_force", np.zeros((60, 2)))
     texts = picture_of(model, width=900, height=900, all_diagrams=True).texts
     shown = [force for force in forces if number(force) in texts]
-    assert 10 < len(shown) < 50
-    assert any(f"{60 - len(shown)} values hidden: zoom in" in text for text in texts)
+    assert 10 < len(shown) < 60
+    assert any(f"{150 - len(shown)} values hidden: zoom in" in text for text in texts)
     assert number(forces[-1]) in texts
     assert np.mean(shown) > np.mean(forces)
 
@@ -91,13 +92,13 @@ def test_the_values_of_what_is_selected_come_before_larger_ones() -> None:
 
 def test_very_short_rods_show_no_values_and_say_so() -> None:
     model = Model()
-    count = 60
+    count = 120
     model.create(Particle, count, position=[(0.1 * i, 0.0) for i in range(count)])
     model.create(Rod, count - 1, between=[(i, i + 1) for i in range(count - 1)])
     fill(model, "rods.axial_force", np.arange(1.0, count))
     texts = picture_of(model, all_diagrams=True).texts
     assert any("zoom in" in text for text in texts)
-    assert number(59.0) not in texts
+    assert number(119.0) not in texts
 
 
 def test_names_of_all_show_only_where_there_are_few() -> None:
@@ -120,7 +121,7 @@ def place_of(blocked: float | None, placed: Placed, line: tuple[float, int] | No
     if line is not None:
         occupancy.line(np.array([[line[0], 0.0]]), np.array([[line[0], 100.0]]), line[1])
     label = Label("1", PLACES, 11, LIGHT.text, 0.0, key=("rods.name", 7))
-    marks = place_labels([label], occupancy, 1.0, placed)
+    marks, _ = place_labels([label], occupancy, 1.0, placed)
     return next((mark.x for mark in marks if isinstance(mark, Text)), None)
 
 
@@ -143,15 +144,16 @@ def test_labels_move_to_where_they_cover_less() -> None:
 def test_what_has_no_place_any_more_is_forgotten() -> None:
     placed = {("rods.name", 7): 1, ("rods.name", 8): 0}
     occupancy = Occupancy(Viewport(0, 0, 100, 100), 1.0)
-    assert place_labels([], occupancy, 1.0, placed) == []
+    assert place_labels([], occupancy, 1.0, placed) == ([], [])
     assert not placed
 
 
 def share_that_stays(model: Model, placed: Placed, *, forget: bool) -> float:
     """The least share of the values in one picture that the one before had, too, while forces vibrate by a tenth."""
     view, told, rng = view_of(model, 900, 900, all_diagrams=True), [], np.random.default_rng(6)
+    count = model.rods.count
     for _ in range(5):
-        fill(model, "rods.axial_force", np.linspace(100.0, 200.0, 60) * rng.uniform(0.9, 1.1, 60))
+        fill(model, "rods.axial_force", np.linspace(100.0, 200.0, count) * rng.uniform(0.9, 1.1, count))
         if forget:
             placed.clear()
         texts = compose(model, view, LIGHT, placed).texts
@@ -161,12 +163,11 @@ def share_that_stays(model: Model, placed: Placed, *, forget: bool) -> float:
 
 
 def test_values_come_and_go_only_where_forces_change_much() -> None:
-    model, placed = random_model(5, 20, 60), {}
-    fill(model, "particles.applied_force", np.zeros((20, 2)))
+    model, placed = mesh(300), {}
     assert share_that_stays(model, {}, forget=True) < 0.85
     assert share_that_stays(model, placed, forget=False) > 0.85
     weak = [key // 3 for (name, key), place in placed.items() if name == "rods.N" and place >= 1000]
-    fill(model, "rods.axial_force", np.where(np.isin(np.arange(60), weak), 1.0, 180.0))
+    fill(model, "rods.axial_force", np.where(np.isin(np.arange(model.rods.count), weak), 1.0, 180.0))
     compose(model, view_of(model, 900, 900, all_diagrams=True), LIGHT, placed)
     assert any(("rods.axial_force", row) not in placed for row in weak)
 
