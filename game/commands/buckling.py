@@ -60,7 +60,8 @@ def _data(model: Model, found: Buckling) -> dict[str, Any]:
 
     factors: none where rods are too coarse for an answer; upper_bounds has what was found then, of the same modes.
     modes: {particle: [x, y, rotation]} of each factor. effective_length: {rod: m} of compressed rods that can bend, and
-    effective_length_factor over their own lengths. axial_force: {rod: {"steady": kN, "factor 1": kN, "critical": kN}}.
+    effective_length_factor over the lengths of their members.
+    axial_force: {rod: {"steady": kN, "factor 1": kN, "critical": kN}}.
     """
     names, rods = model.particles.names, model.rods.names
     modes = np.zeros((len(found.modes), model.particles.count, 3))
@@ -72,7 +73,7 @@ def _data(model: Model, found: Buckling) -> dict[str, Any]:
         for name, length in zip(rods, found.effective_length, strict=True)
         if length == length and not found.coarse
     }
-    own = dict(zip(rods, model.rods.rest_length, strict=True))
+    own = dict(zip(rods, found.member_length, strict=True))
     return {
         "factors": found.factors[:0] if found.coarse else found.factors,
         "upper_bounds": found.factors if found.coarse else found.factors[:0],

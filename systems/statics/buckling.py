@@ -13,6 +13,7 @@ import numpy as np
 from pinjoint.components.language import plural, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
+from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import needed_parts
 from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised, upright
@@ -32,6 +33,10 @@ from pinjoint.systems.statics.theory import FULL, linear
 RESTARTS = 100
 LANCZOS = 40  # vectors that the lowest of larger structures are found from, at least
 MODES = 5
+IDLE = (
+    1e-6  # of the work of compression on the member that does most: those that do less take no part in a mode
+)
+IN_LINE = 1e-6  # sine of the angle between rods, and share of their bending stiffness
 NOTHING = 1e-10  # of the largest axial force, or of the largest eigenvalue: round-off
 # Of the rods' stiffness: by what tension is to hold a mechanism before it gives way.
 STIFFENED = 1e-6, 1e-8, 1e-10
@@ -44,7 +49,9 @@ class Buckling:
     the largest motion of each 1.
 
     dead, live: first-order axial forces (kN) of what acts in full, and of forces and loads at the factor 1, (rods,).
-    effective_length: π √(EI/−N) of compressed rods with a bending stiffness at the lowest factor (m), else NaN, (rods,).
+    effective_length: π √(EI/−N) of compressed rods with a bending stiffness at the lowest factor (m), (rods,); NaN of others
+    and where compression does no work in the lowest mode. member_length: of rods that continue each other in a line, all
+    together (m), (rods,).
     leading: rows of the rods whose compression does most of the work in each mode, (k,), and leading_length, their effective
     lengths at its factor (m), NaN without bending stiffness, (k,).
     notes: sentences about what the factors leave out. message: why there is none; "" if there are some. coarse: rods are so
@@ -56,6 +63,7 @@ class Buckling:
     dead: Array
     live: Array
     effective_length: Array
+    member_length: Array
     leading: Rows
     leading_length: Array
     notes: tuple[str, ...] = ()
@@ -84,6 +92,11 @@ class Buckling:
         fields = structure.fields(vectors)
         modes = np.array([upright(normalised(field)) for field in fields]).reshape(fields.shape)
         leading = np.array([int(_work(structure, field, -live).argmax()) for field in fields], dtype=np.intp)
+        member = _members(model)
+        taking = np.zeros(len(live), dtype=bool)
+        if len(fields):
+            work = np.bincount(member, _work(structure, fields[0], -live))
+            taking = (work > IDLE * work.max())[member]
         lengths = [_effective_length(model, dead + factor * live) for factor in factors]
         lowest = dead + factors[0] * live if len(factors) else np.zeros(len(dead))
         return cls(
@@ -91,7 +104,8 @@ class Buckling:
             modes,
             dead,
             live,
-            _effective_length(model, lowest),
+            np.where(taking, _effective_length(model, lowest), np.nan),
+            np.bincount(member, model.rods.rest_length)[member].astype(np.float64),
             leading,
             np.array([length[row] for length, row in zip(lengths, leading, strict=True)]),
             tuple(_notes(model, factors, lowest)),
@@ -217,6 +231,23 @@ def _work(structure: Structure, mode: Array, compression: Array) -> Array:
         nearer += structure.bending.bow(structure.slope_rates(mode, unmoved))[1]
     work: Array = compression * nearer
     return work
+
+
+def _members(model: Model) -> Rows:
+    """The number of the member of each rod, (rods,): rods in a line, alike and rigidly joined where nothing else is."""
+    rods, particles = model.rods, model.particles
+    ends, rigid = rods.between.astype(np.intp), rods.turning_shares > 0.0
+    axis = rods.difference / np.maximum(rods.original_length, 1e-300)[:, None]
+    joined = np.bincount(ends.ravel(), minlength=particles.count) == 2
+    free = joined & ~particles.fixed.any(axis=1) & ~particles.fixed_rotation
+    order = np.argsort(ends.ravel(), kind="stable")
+    one, other = order[free[ends.ravel()[order]]].reshape(-1, 2).T  # both ends of rods at such joints
+    cross = axis[one // 2, 0] * axis[other // 2, 1] - axis[one // 2, 1] * axis[other // 2, 0]
+    stiffness = rods.bending_stiffness
+    same = (np.abs(cross) < IN_LINE) & rigid.ravel()[one] & rigid.ravel()[other]
+    same &= np.isclose(stiffness[one // 2], stiffness[other // 2], rtol=IN_LINE)
+    pairs = np.stack([one[same] // 2, other[same] // 2], axis=1)
+    return lowest_joined(rods.count, pairs)
 
 
 def _effective_length(model: Model, axial_force: Array) -> Array:

@@ -311,7 +311,7 @@ def test_the_command_prints_factors_modes_and_effective_lengths(
     assert len(found["modes"][0]["P2"]) == 3
     assert found["effective_length"]["R0"] == pytest.approx(20.0, rel=1e-3)
     assert found["leading"][0] == {"rod": "R1", "effective_length": pytest.approx(20.0, rel=1e-3)}
-    assert found["effective_length_factor"]["R0"] == pytest.approx(4.0, rel=1e-3)
+    assert found["effective_length_factor"]["R0"] == pytest.approx(2.0, rel=1e-3), "of both rods"
     assert found["axial_force"]["R0"] == pytest.approx(
         {"steady": 0.0, "factor 1": -1.0, "critical": -found["factors"][0]}, abs=1e-9
     )
@@ -375,3 +375,23 @@ def test_a_factor_that_is_too_coarse_is_no_answer(
         assert ("load factor, at most" in capsys.readouterr().out) is coarse
         main(["buckling", str(path), "--modes", "1", "--format", "csv"])
         assert ("upper_bound" in capsys.readouterr().out) is coarse
+
+
+def test_rods_in_a_line_are_one_member_and_who_stands_aside_has_no_length() -> None:
+    """A column in four parts buckles; beside it stands one that is ten times as stiff."""
+    particles = [{"name": f"A{k}", "position": [0.0, k]} for k in range(5)]
+    particles[0] |= {"fixed": [True, True]}
+    particles[4] |= {"fixed": [True, False], "force": [0.0, -1.0]}
+    particles += [
+        {"name": "B0", "position": [2.0, 0.0], "fixed": [True, True]},
+        {"name": "B1", "position": [2.0, 2.0]},
+        {"name": "B2", "position": [2.0, 4.0], "fixed": [True, False], "force": [0.0, -1.0]},
+    ]
+    alike = {"stiffness": 1e5, "bending_stiffness": 100.0}
+    rods = [{"name": f"a{k}", "between": [f"A{k}", f"A{k + 1}"], **alike} for k in range(4)]
+    stiff = alike | {"bending_stiffness": 1000.0}
+    rods += [{"name": f"b{k}", "between": [f"B{k}", f"B{k + 1}"], **stiff} for k in range(2)]
+    found = Buckling.of(parse(model(particles, rods)))
+    assert found.member_length == pytest.approx([4.0] * 6)
+    assert found.effective_length[:4] == pytest.approx([4.0] * 4, rel=1e-3)
+    assert np.isnan(found.effective_length[4:]).all()
