@@ -15,7 +15,7 @@ import numpy as np
 from pinjoint import pictures
 from pinjoint.commands.analysis import FOUND
 from pinjoint.commands.arguments import Parser, UsageError, positive
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, session_of
 from pinjoint.commands.output import writable, writing
 from pinjoint.components.language import tr
 from pinjoint.components.settings import DIAGRAMS
@@ -50,6 +50,7 @@ def command(words: Sequence[str]) -> int:
             endings=", ".join(_PICTURES),
         )
     _check_background(options)
+    _check_static(options)
     session = session_of(options)
     session.view.all_diagrams = options.diagrams or options.diagrams_of is not None
     session.view.quantity = options.diagrams_of or session.view.quantity
@@ -59,7 +60,7 @@ def command(words: Sequence[str]) -> int:
         status = draw(session, options, (width, height))
     if status in FOUND:
         return ANSWERED
-    tell(session.simulation.message)
+    tell(session.document.statics.message if options.static else session.simulation.message)
     return NOT_ANSWERED
 
 
@@ -80,6 +81,14 @@ def _parser() -> Parser:
         "--until-rest", action="store_true", help=tr("run until at rest first (the default of a .gif)")
     )
     parser.add_argument("--at", type=positive, metavar="T", help=tr("run to this time (s) first"))
+    parser.add_argument(
+        "--static",
+        action="store_true",
+        help=tr(
+            "draw the static equilibrium, from the undeformed beginning, by the theory of the model or --theory"
+        ),
+    )
+    add_theory(parser, None)
     parser.add_argument("--diagrams", action="store_true", help=tr("draw all force diagrams"))
     parser.add_argument(
         "--diagrams-of",
@@ -142,6 +151,25 @@ def _check_background(options: argparse.Namespace) -> None:
         )
 
 
+def _check_static(options: argparse.Namespace) -> None:
+    """Raise UsageError where an option does not go with statics."""
+    if options.theory is not None and not options.static:
+        raise UsageError("{option} works only together with --static; add it.", option="--theory")
+    moving = options.until_rest or options.at is not None or options.output.lower().endswith(".gif")
+    if options.static and moving:
+        raise UsageError("--static: nothing moves in statics; leave out --until-rest, --at and .gif.")
+
+
+def _solve(session: Session, options: argparse.Namespace) -> str:
+    """Show the static equilibrium in place of the state; returns its status."""
+    if options.theory is not None:
+        session.model.settings.theory = options.theory
+    session.scenes.request("statics")
+    session.scenes.apply(session)
+    settlement = session.document.statics.settlement
+    return settlement.status if settlement is not None else "limit reached"
+
+
 def _show_shape(session: Session, options: argparse.Namespace) -> None:
     """Draw the mechanism or mode that the options ask for. Raises NoShape if there is none with that number."""
     for kind in ("mechanism", "mode", "buckling mode"):
@@ -151,7 +179,9 @@ def _show_shape(session: Session, options: argparse.Namespace) -> None:
 
 def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:
     status = "time reached"
-    if options.until_rest:
+    if options.static:
+        status = _solve(session, options)
+    elif options.until_rest:
         status = session.run(until="rest", limit=options.limit)
     elif options.at is not None:
         status = session.run(time=options.at)

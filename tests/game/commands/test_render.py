@@ -132,3 +132,14 @@ def test_a_picture_of_several_sets_is_whole(tmp_path: Path, monkeypatch: pytest.
         corner = colours(tmp_path / name)[0, 0, :3]
         assert tuple(corner) == load_theme(app.session.view.theme).background[:3]
     app.close()
+
+
+def test_the_static_equilibrium_is_drawn_with_the_numbers_of_a_hand_calculation(tmp_path: Path) -> None:
+    path = tmp_path / "a.svg"
+    words = ["render", "gerber_beam", "--static", "--output", str(path)]
+    assert main([*words, "--theory", "first-order"]) == 0
+    texts = {text.text for text in ET.parse(path).getroot().iter(f"{SVG}text")}
+    assert {"60.00 kN·m", "20.00 kN·m", "80.00 kN", "20.00 kN"} <= texts
+    assert main([*words, "--set", "particles.B.fixed=0,0"]) == 1  # a mechanism: the last equilibrium
+    with pytest.raises(SystemExit, match="2"):
+        main([*words, "--at", "1"])
