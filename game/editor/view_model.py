@@ -11,6 +11,7 @@ from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, english, joined, listed, marked, plural, tr
 from pinjoint.components.model import Model
+from pinjoint.components.settings import PAUSE
 from pinjoint.components.tags import Hovered
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from pinjoint.editor.context import Context, Waiting
@@ -68,7 +69,7 @@ def show(context: Context, elapsed: float) -> None:
     view.status = Status(
         time=None if solved else context.time,
         speed=context.document.live.clock.shown_pace if context.busy else 0.0,
-        state=_state_word(context),
+        state=_state_word(context, brief=bool(drawing)),
         hint=drawing or scene.hint(context),
         problem=_problem(context),
         notice=said or joined([lately, *lasting]),
@@ -236,8 +237,8 @@ def _end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
     return Preview("hinge", at, at, label)
 
 
-def _state_word(context: Context) -> str:
-    """The state of the run in English, which is translated where it is shown."""
+def _state_word(context: Context, *, brief: bool) -> str:
+    """The state of the run in English, which is translated where it is shown; brief: beside the steps of a tool."""
     if context.model.solution is not None:
         return context.document.statics.said
     if context.simulation.halted:
@@ -245,7 +246,8 @@ def _state_word(context: Context) -> str:
     if context.awaited is not None:
         return marked("preparing")
     if not context.busy:
-        return marked("paused, not in equilibrium") if context.view.provisional else marked("paused")
+        moved = context.view.provisional and context.scene == PAUSE and not brief
+        return marked("paused, not in equilibrium") if moved else marked("paused")
     return marked("running below the set speed") if context.document.live.clock.lagging else marked("running")
 
 
