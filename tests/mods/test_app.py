@@ -261,10 +261,10 @@ def test_a_kind_that_cannot_be_is_refused(write_mod: Write, change: tuple[str, s
 
 
 def test_a_tool_of_a_mod_draws_its_kind(write_mod: Write) -> None:
-    opened(write_mod, "app.kind(Gate)\napp.tool(Gate, key='q', icon=[('line', (0, 0, 5, 5))])", GATE)
+    opened(write_mod, "app.kind(Gate)\napp.tool(Gate, key='y', icon=[('line', (0, 0, 5, 5))])", GATE)
     session = Session.open(FALLING)
     session.point(0, 0.5)
-    session.press("q")
+    session.press("y")
     session.click(1, 0.5)
     assert [gate.name for gate in session.table("gates")] == ["g", "gate 1"]
     buttons = [tool.action for group in session.view.toolbar.groups for tool in group]

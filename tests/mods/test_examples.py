@@ -171,7 +171,7 @@ class Aim(Scene):
 
 def plugin(app):
     app.scene(Aim)
-    app.action("apple.aim", key="q", scenes=("pause",))(lambda session, pixel: session.scenes.request("aim"))
+    app.action("apple.aim", key="y", scenes=("pause",))(lambda session, pixel: session.scenes.request("aim"))
 
     @app.action("apple.hit", key="click", scenes=("aim",))
     def hit(session, pixel):
@@ -182,7 +182,7 @@ def plugin(app):
 
 def test_the_message_of_a_mods_scene_is_seen_and_clicks_are_its_own(write_mod: Write) -> None:
     session = Session.open("pendulum", mods=[write_mod("apple", TARGETS)])
-    session.press("q")
+    session.press("y")
     assert session.message == ""
     session.click(0.5, 0.25)
     scene: Any = session.scenes.active

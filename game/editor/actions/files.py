@@ -53,7 +53,7 @@ def _new(context: Context, pixel: Vector) -> None:
     context.scenes.request_from_pause(STATICS)
 
 
-@action("sheet", "", "save a sheet: drawing, diagrams and tables as a PDF")
+@action("sheet", "", "save a sheet as PDF")
 def _sheet(context: Context, pixel: Vector) -> None:
     """Write the static solution of the model, from its undeformed beginning, to a PDF in the working folder."""
     if context.window is None:

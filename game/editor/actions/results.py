@@ -86,7 +86,7 @@ def _following(context: Context, shown: bool) -> bool:
 @action(
     "toggle statics",
     "q",
-    "show the equilibrium, by statics",
+    "statics: the equilibrium",
     pressed=lambda context: context.scenes.hub == STATICS and context.scene != SIMULATION,
     while_drawing=False,
 )
@@ -98,7 +98,7 @@ def _toggle_statics(context: Context, pixel: Vector) -> None:
 @action(
     "next theory",
     "z",
-    "change the theory of statics: first order or exact",
+    "theory: first order or exact",
     (STATICS,),
     pressed=lambda context: context.model.settings.theory == EXACT,
     while_drawing=False,
