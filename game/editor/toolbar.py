@@ -148,7 +148,15 @@ def _of_canvas(context: Context) -> Groups:
         ["toggle theory", "toggle energy", "toggle events", "next shape"],
         [*of_mods(draw=False)],
         ["fit", "new grid", "next grid", "toggle legend", "next theme", "next language"],
-        ["environment", "toggle full screen", "toggle help", "screenshot", "picture as svg", "picture as pdf", "sheet"],
+        [
+            "environment",
+            "toggle full screen",
+            "toggle help",
+            "screenshot",
+            "picture as svg",
+            "picture as pdf",
+            "sheet",
+        ],
     ]
     if context.view.strip.width == 0:
         known = {entry if isinstance(entry, str) else entry[0] for group in groups for entry in group}

@@ -140,6 +140,6 @@ def test_the_static_equilibrium_is_drawn_with_the_numbers_of_a_hand_calculation(
     assert main([*words, "--theory", "first-order"]) == 0
     texts = {text.text for text in ET.parse(path).getroot().iter(f"{SVG}text")}
     assert {"60.00 kN·m", "20.00 kN·m", "80.00 kN", "20.00 kN"} <= texts
-    assert main([*words, "--set", "particles.B.fixed=0,0"]) == 1  # a mechanism: the last equilibrium
+    assert main([*words, "--set", "particles.B.fixed=false,false"]) == 1  # a mechanism: the last equilibrium
     with pytest.raises(SystemExit, match="2"):
         main([*words, "--at", "1"])
