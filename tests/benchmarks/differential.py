@@ -17,6 +17,7 @@ import numpy as np
 from pinjoint import Session
 from pinjoint.documents import models
 from pinjoint.systems.statics.path import Curve, Goal
+from pinjoint.systems.statics.relax import LARGEST_PLASTIC_STRAIN
 from pinjoint.systems.statics.settle import Settlement, settle
 from pinjoint.systems.statics.state import StaticState
 from tests.reference import statics, transients
@@ -185,7 +186,7 @@ def _equilibria(found: Finding) -> None:
     found.errors["balance"] = max(balances, default=0.0)
     jumps = _jumps(settlement)
     expected, reason = _followed(given, INCREMENTS[0])
-    if len(expected) > len(states):
+    if len(expected) > len(states) and not _yields_too_far(given.document, expected[len(states)]):
         found.wrong.append(f"{settlement.status}, but there is an equilibrium. {settlement.message}")
     if sum(state.status == "equilibrium" for state in states) > len(expected) and not jumps:
         if not expected and "load factor 0." in reason:
@@ -237,6 +238,13 @@ def _in_a_valley(found: Finding, state: StaticState, *, compares: bool) -> None:
         _compare_states(found, [state], [lowest])
         if found.errors["axial_force"] > IN_EQUILIBRIUM["axial_force"]:
             found.errors, found.unsure = errors, "another place of least energy was found"
+
+
+def _yields_too_far(document: Document, state: Document) -> bool:
+    """True if a state of the independent method is beyond the strains of which there is a result."""
+    before = {rod["name"]: rod.get("plastic_strain", 0.0) for rod in document["rods"]}
+    gained = (abs(strain - before[name]) for name, strain in state["plastic_strain"].items())
+    return max(gained, default=0.0) > LARGEST_PLASTIC_STRAIN
 
 
 def _followed(given: Case, increments: int, *, always: bool = False) -> tuple[list[Document], str]:

@@ -60,6 +60,7 @@ MOUSE = (
 OFTEN = {  # keys that are pressed more often than others, so that every scene is seen as much as any
     "simulation": ("l", "p", "i", "drag", "space"),
     "pause": (*"pplllcfv", "ctrl+r", "ctrl+j", "ctrl+m", *"kkk", "return", "space", "space", *"eh"),
+    "statics": (*"zzqqiil", "drag", "return", "space", "delete"),
     "properties": ("escape", "tab", "tab", "return", "up", "down"),
     "save": ("escape", "return", "return"),
     "load": ("escape", "escape", "down", "return", "return"),
@@ -202,6 +203,8 @@ class Fuzz:
                 self._do("space")
             elif session.scene != "pause":
                 self._do("escape")
+        if session.scene == "statics":
+            self._do("q")
         assert session.scene == "pause", session.scene
 
     def check_log(self) -> None:

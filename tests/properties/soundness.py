@@ -16,7 +16,7 @@ def contents(model: Model) -> Print:
     for table in model.tables.values():
         found[table.name] = table.entities.tolist()
         for field in table.fields_in(Role.DOCUMENT, Role.STATE):
-            column = table.column(field.name)
+            column = table.storage(field.name)
             found[f"{table.name}.{field.name}"] = (
                 column.tolist() if column.dtype == object else column.tobytes()
             )
@@ -30,7 +30,7 @@ def check_sound(model: Model) -> None:
         assert len(set(table.names)) == table.count == len(table.handles)
         assert [handle.row for handle in table] == list(range(table.count))
         for field in table.fields_in(Role.DOCUMENT, Role.STATE):
-            column = table.column(field.name)
+            column = table.storage(field.name)
             if field.dtype is float and not field.nullable:
                 assert np.isfinite(column).all(), (table.name, field.name)
     ends = rods.between.astype(np.int64)
