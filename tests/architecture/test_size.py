@@ -19,7 +19,7 @@ MOST = {
     "public names": 2_115,
     "numbers": 1_378,  # other than 0, 1 and 2, in constants and defaults
     "registers": 39,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 50_013,
+    "lines of tests": 50_024,
 }
 
 
