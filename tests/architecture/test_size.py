@@ -13,7 +13,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 62_655,
+    "lines": 62_656,
     "files": 362,
     "names": 3_495,  # functions, classes and constants of modules
     "public names": 2_115,

@@ -146,10 +146,10 @@ def test_panels_lead_back_to_statics() -> None:
 
 
 def test_no_time_passes() -> None:
-    session = shown("portal")
-    plan = session.plan()
+    plan = Session.open("portal").plan("statics")
     assert plan.phases[Phase.STEP] == ()
     assert "statics.solve" in [system.name for system in plan.phases[Phase.EDIT]]
+    session = shown("portal")
     session.press(".")
     assert "no time passes" in session.notice
     session.run(steps=1)  # which leaves it

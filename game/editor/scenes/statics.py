@@ -43,8 +43,9 @@ class Solve(System):
     unneeded = marked("the model has no rods")
 
     def needs(self, model: Model) -> bool:
-        return model.solution is not None and bool(model.rods.count)
+        return bool(model.rods.count)
 
     def process(self, frame: Any) -> None:
         """Solve, if anything changed."""
-        frame.session.document.statics.solve()
+        if frame.model.solution is not None:  # not beside boxes that pause leads to
+            frame.session.document.statics.solve()
