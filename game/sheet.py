@@ -36,8 +36,9 @@ class NoSheet(Mistake, ValueError):
 
 def sheet(model: Model, theory: str = FIRST_ORDER) -> bytes:
     """The sheet of a model, solved from its undeformed beginning, as a PDF file. Raises NoSheet, FieldError."""
-    solved = Solved(model, theory)
-    return as_paper(solved.title, partial(contents, solved), f"Pinjoint · {solved.title}", LAYOUTS[:2])
+    with model.own_state():  # the mode of statics shows another solution, from which none begins
+        solved = Solved(model, theory)
+        return as_paper(solved.title, partial(contents, solved), f"Pinjoint · {solved.title}", LAYOUTS[:2])
 
 
 class Solved:
@@ -48,13 +49,9 @@ class Solved:
         self.title = tr(model.title) if model.title else tr("Structure")
         if not model.rods.count:
             raise NoSheet("The model has no rods, so there is no structure to solve.")
-        rods, particles = model.rods, model.particles
-        start = Start(
-            np.where(particles.fixed, particles.displacement, 0.0),
-            rods.plastic_strain if model.clock.time == 0.0 else np.zeros(rods.count),
-            np.where(particles.fixed_rotation, particles.rotation, 0.0),
-        )
-        settlement = settle(model, theory=theory, start=start)
+        rods = model.rods
+        strain = rods.plastic_strain if model.clock.time == 0.0 else np.zeros(rods.count)
+        settlement = settle(model, theory=theory, start=Start.undeformed(model, strain))
         final = settlement.final
         if not final.balanced:
             raise NoSheet("There is no sheet without an equilibrium. {reason}", reason=settlement.message)

@@ -7,6 +7,7 @@ import pytest
 from pinjoint.commands.command_line import main
 from pinjoint.components.theory import EXACT, FIRST_ORDER, THEORIES
 from pinjoint.documents import models
+from pinjoint.session import Session
 from pinjoint.sheet import NoSheet, Solved, contents, sheet
 from pinjoint.systems.render.backends.paper import LAYOUTS, Figure
 from pinjoint.systems.statics.theory import linear
@@ -89,3 +90,12 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert path.read_bytes().startswith(b"%PDF")
     assert main(["sheet", "newtons_cradle", "--output", str(path)]) == 2
     assert "no structure to solve" in capsys.readouterr().err
+
+
+def test_what_statics_shows_is_not_where_a_sheet_begins() -> None:
+    session = Session.open("three_bar_plastic")
+    session.model.settings.load_steps = [1.0, 0.0]
+    before = sheet(session.model, EXACT)
+    session.press("q")
+    assert session.rods["AD"].plastic_strain or session.rods["BD"].plastic_strain
+    assert sheet(session.model, EXACT) == before
