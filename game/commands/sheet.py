@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pinjoint.commands.arguments import Parser
-from pinjoint.commands.options import ANSWERED, add_model, model_of
+from pinjoint.commands.options import ANSWERED, add_model, add_theory, model_of
 from pinjoint.commands.output import writable, writing
 from pinjoint.components.language import tr
-from pinjoint.components.theory import FIRST_ORDER, THEORIES
+from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.documents.models import replace
 
 
@@ -22,12 +22,7 @@ def command(words: Sequence[str]) -> int:
     )
     add_model(parser)
     parser.add_argument("--output", type=writable, required=True, metavar="FILE", help=tr("the PDF to write"))
-    parser.add_argument(
-        "--theory",
-        choices=THEORIES,
-        default=FIRST_ORDER,
-        help=tr("small displacements (the default), or exact geometry"),
-    )
+    add_theory(parser, FIRST_ORDER)
     options = parser.parse_args(words)
     from pinjoint.sheet import sheet  # it imports reportlab and scipy
 
