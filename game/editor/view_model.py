@@ -41,19 +41,15 @@ def show(context: Context, elapsed: float) -> None:
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
     lately = context.document.chronicle.told(elapsed) if context.scene in LIVE else ""
-    lasting = (
-        [context.notice]
-        if context.notice
-        else [
-            *(remark.message for remark in context.document.assessment.remarks),
-            "" if follows(context) else _gone(context),
-        ]
-    )
-    lasting += [_unsettled(context)] * (not any(lasting))
-    solved = context.model.solution is not None
-    if solved and not context.notice:
-        statics = context.document.statics
+    solved, statics = context.model.solution is not None, context.document.statics
+    if context.notice:
+        lasting = [context.notice]
+    elif solved:
         lasting = [statics.message, statics.second_order if context.gesture is None else ""]
+    else:
+        remarks = [remark.message for remark in context.document.assessment.remarks]
+        lasting = [*remarks, "" if follows(context) else _gone(context)]
+        lasting += [_unsettled(context)] * (not any(lasting))
     view.preview = _preview(context)
     if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
         view.pressed = None
