@@ -17,6 +17,7 @@ from pinjoint.components.slider import SliderStack
 from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import MARGIN, Plot, Status, View
 from pinjoint.documents import models
+from pinjoint.editor.view_model import exaggerate
 from pinjoint.session import Session
 from pinjoint.systems.render.backends.pdf import as_pdf
 from pinjoint.systems.render.backends.svg import as_svg
@@ -36,7 +37,7 @@ def render(
     session: Session, path: str | Path, size: Size, theme: str = "light", background: Background = "theme"
 ) -> None:
     """Draw a session to a file in the format of its suffix, without a display. Raises OSError if it cannot be written."""
-    session.exaggerate()
+    exaggerate(session)
     session.update_view()
     view = on_paper(session.view, Camera(viewport=Viewport(0, 0, *size)))
     view.fit(session.model)

@@ -23,6 +23,7 @@ from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.view import drawn_places
 from pinjoint.documents.models import replace
 from pinjoint.documents.shapes import numbered
+from pinjoint.editor.view_model import exaggerate
 from pinjoint.session import Session
 from pinjoint.streams import tell
 from pinjoint.systems.base import DEFAULT_LIMIT
@@ -197,7 +198,7 @@ def _animate(session: Session, options: argparse.Namespace, size: tuple[int, int
     _show_shape(session, options)
     until = None if options.until_rest or options.at is None else session.time + options.at
     status, moments = _run(session, until, options.limit)
-    session.exaggerate()
+    exaggerate(session)
     places = []
     for moment in moments:
         moment.restore(session.model)
