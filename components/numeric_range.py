@@ -63,8 +63,8 @@ def _extreme(field: Field[Any], column: Column) -> Column:
     extreme: Column = (size > LARGEST) & np.isfinite(size)
     if field.above == 0.0:
         extreme |= size < SMALLEST
-    if field.name == "inertia":
-        extreme |= (size < SMALLEST) & (size > 0.0)  # 0: it does not turn
+    if field.name in ("inertia", "density"):
+        extreme |= (size < SMALLEST) & (size > 0.0)  # 0: it does not turn, it has no weight
     return extreme
 
 

@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, NoReturn, Protocol, TypeVar
+from typing import Any, NoReturn, Protocol, TypeVar, overload
 
 import esper
 import numpy as np
@@ -571,12 +571,17 @@ class World:
         """For each esper id, whether that entity, which may be deleted, carries a tag."""
         return flags(self._tagged.get(tag, []), len(self.row_of_entity))
 
-    def tagged(self, tag: type) -> list[Handle]:
-        """Handles of the existing entities with a tag, in order of creation."""
+    @overload
+    def tagged(self, tag: type) -> list[Handle]: ...
+    @overload
+    def tagged(self, tag: type, *kinds: type[H]) -> list[H]: ...
+    def tagged(self, tag: type, *kinds: type[Any]) -> list[Any]:
+        """Handles of the existing entities with a tag, of these kinds if any are given, in order of creation."""
         tagged = [(self.tables[name], rows) for name, rows in self.rows_tagged(tag).items()]
         found = [table.handles[row] for table, rows in tagged for row in rows.tolist()]
         order = np.argsort(np.concatenate([table.entities[rows] for table, rows in tagged]))
-        return [found[place] for place in order.tolist()]
+        ordered = [found[place] for place in order.tolist()]
+        return [handle for handle in ordered if isinstance(handle, kinds)] if kinds else ordered
 
     def rows_tagged(self, tag: type) -> dict[str, NDArray[np.intp]]:
         """Rows, ascending, of the existing entities with a tag, by table; found once until tags or rows change."""

@@ -33,6 +33,7 @@ from pinjoint.documents.preferences import (
 from pinjoint.editor.frame import Frame
 from pinjoint.editor.scenes.load import Load
 from pinjoint.interrupts import closed_by_signals
+from pinjoint.lessons.course import take_up_lesson
 from pinjoint.pictures import on_paper, write
 from pinjoint.preparation import Preparation
 from pinjoint.scripts.lines import Failure
@@ -206,7 +207,7 @@ class App:
                 while not self.closed:
                     self.next_frame()
                     with nullcontext() if played else around("lessons"):  # a script gets its exceptions
-                        self.session.take_up_lesson()
+                        take_up_lesson(self.session)
                         lesson, self.session.lesson = self.session.lesson, None
                         failures += Performance(self, lesson).play() if lesson is not None else []
                     played = False

@@ -138,7 +138,7 @@ class Headless(Context):
         time = None if time is None else forward("time", time)
         steps = None if steps is None else int(forward("steps", steps, whole=True))
         reached = "time reached" if until is None else "limit reached"
-        with self._time_passing() as simulation:
+        with self.running() as simulation:
             if until is not None:
                 simulation.run_until_rest(self.time + limit)
             elif time is not None:
@@ -148,15 +148,12 @@ class Headless(Context):
         ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
         return ended.get(simulation.reason, reached)
 
-    def go_to(self, steps: int, within: float | None = None) -> None:
-        """Let time pass to a moment of a recorded run: so many whole steps, and perhaps a time (s) within the next."""
-        if (steps, within) != self.simulation.moment:
-            with self._time_passing() as simulation:
-                simulation.go_to(steps, within)
-
     @contextmanager
-    def _time_passing(self) -> Iterator[Simulation]:
-        """Time passes inside: it is one run in the log, which stops, by ModError, where a mod fails."""
+    def running(self) -> Iterator[Simulation]:
+        """Let time pass by the simulation inside: that is one run in the log, which stops, by ModError, where a mod fails.
+
+        Meanwhile systems of phase EVENTS run every EVENT_INTERVAL steps.
+        """
         if self.model.solution is not None:  # whose columns show no run
             self.scenes.request(PAUSE)
             self.scenes.apply(self)
@@ -166,7 +163,7 @@ class Headless(Context):
         document.history.begin_run()
         document.timeline.begin()
         try:
-            with heeding_mods(simulation), self.without_frames(), simulation.watched():
+            with heeding_mods(simulation), self._without_frames(), simulation.watched():
                 yield simulation
                 document.chronicle.look()
         finally:
@@ -174,7 +171,7 @@ class Headless(Context):
                 document.history.end_run()
 
     @contextmanager
-    def without_frames(self) -> Iterator[None]:
+    def _without_frames(self) -> Iterator[None]:
         """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
         simulation, frame = self.simulation, HeadlessFrame(self, 0.0)
         if self.footer is not None or not self.schedule.runs_headless(Phase.EVENTS, frame.scene, self.model):

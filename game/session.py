@@ -26,12 +26,10 @@ from pinjoint.editor.readouts import readouts
 from pinjoint.editor.routing import Press
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
-from pinjoint.editor.sliders import slider_stack, sliders_of
-from pinjoint.editor.toolbar import toolbar_of
-from pinjoint.editor.view_model import follows, show
+from pinjoint.editor.sliders import sliders_of
+from pinjoint.editor.view_model import exaggerate, offer_tools, show
 from pinjoint.headless import Headless, forward
-from pinjoint.lessons.course import Course
-from pinjoint.lessons.tasks import Lesson
+from pinjoint.lessons.course import Course, take_up_lesson
 from pinjoint.mods.mod import blamed_on_mod
 from pinjoint.scripts.expectation import check
 from pinjoint.scripts.script import Script, ScriptError
@@ -84,7 +82,7 @@ class Session(Headless):
         # Of the window (pixels).
         self.extent = self.view.camera.viewport.width, self.view.camera.viewport.height
         self.documents.on_leave, self.documents.on_begin = self._leave_document, self._begin_document
-        self.offer_tools()
+        offer_tools(self)
         self._begin_document()
 
     def __reduce_ex__(self, protocol: object) -> NoReturn:
@@ -112,40 +110,6 @@ class Session(Headless):
         self.select(*made)
         return made
 
-    # --- lessons -------------------------------------------------------------------------------------
-
-    def leave_lesson(self) -> None:
-        """Leave the lesson for the document that was open before it."""
-        self._put_away_lesson()
-        if self.scene != "pause":
-            self.scenes.request("pause")
-            self.scenes.apply(self)
-        self.leave_gesture()
-        while self.document.practice and self.documents.can_move(-1):
-            self.documents.move(-1)
-        self._begin_document()
-
-    def _put_away_lesson(self) -> None:
-        self.course = None
-        self.resize(*self.extent, self.view.pixel_ratio)
-
-    def take_up_lesson(self) -> None:
-        """Begin the lesson with tasks that a person chose, where it was left; one to watch puts that away."""
-        script = self.lesson
-        if script is not None and not script.task_count and self.course is not None and script.name:
-            self._put_away_lesson()
-        if script is None or not script.task_count:
-            return
-        self.lesson = None
-        try:
-            self.course = course = Course(self, Lesson(script))
-            self.resize(*self.extent, self.view.pixel_ratio)
-            course.begin()
-            course.show_card()
-        except ScriptError as error:
-            self.leave_lesson()
-            self.notice = str(error)
-
     # --- scenes and actions --------------------------------------------------------------------------
 
     def plan(self, scene: str | None = None) -> Plan:
@@ -165,14 +129,14 @@ class Session(Headless):
             self.leave_gesture()
         if not action.in_menu:
             self.view.menu = None
-        self.exaggerate()
+        exaggerate(self)
         try:
             action.perform(self, pixel if pixel is not None else self.view.pixel)
         except (Refusal, FieldError) as error:
             self.notice = str(error)
         self.scenes.apply(self)
-        self.take_up_lesson()
-        self.offer_tools()
+        take_up_lesson(self)
+        offer_tools(self)
         self._make_room()
 
     def _leave_document(self) -> None:
@@ -202,18 +166,6 @@ class Session(Headless):
         view = self.view
         wanted = view.wanted or view.free_bodies or any(readout.is_large for readout in readouts(self))
         view.share(self.model, shares=view.legend and bool(wanted))
-
-    def offer_tools(self) -> None:
-        """Let toolbar, sliders and help show what can be done now; what is not seen stays as it was."""
-        self.view.keys = tuple(ACTIONS.help_lines(self.scene)) if self.view.help else ()
-        if not self.scenes.active.covers(self):
-            self.view.toolbar, self.view.sliders = toolbar_of(self), slider_stack(self)
-
-    def follow(self) -> None:
-        """Fit the view in a window that what moves has left; recorded as the key that does so."""
-        if follows(self):
-            self._record("home", None)
-            self.act("fit")
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
         """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing.
@@ -262,7 +214,7 @@ class Session(Headless):
             return ""
         self.scenes.request(*dict.fromkeys(("pause", tools)))
         self.scenes.apply(self)
-        self.offer_tools()
+        offer_tools(self)
         return scene
 
     def _open_files(self, paths: Iterable[str]) -> None:
@@ -279,7 +231,7 @@ class Session(Headless):
                 problems.append(str(error))
             else:
                 opened.append(path.stem)
-        self.take_up_lesson()
+        take_up_lesson(self)
         if opened and self.scene != "pause":  # not even one that its keys would lead back to
             self.scenes.request("pause")
             self.scenes.apply(self)
@@ -288,7 +240,7 @@ class Session(Headless):
         scene = self.scenes.active
         if isinstance(scene, FileScene):
             scene.form.message = self.notice
-        self.offer_tools()
+        offer_tools(self)
 
     def _open_file(self, path: Path) -> None:
         """Open a model file, or play a recorded session. Raises ModelError or ScriptError; then nothing has changed.
@@ -403,7 +355,7 @@ class Session(Headless):
     def update_view(self, elapsed: float = 0.0) -> None:
         """Bring what the view says about the run up to date, so many seconds after the last time."""
         show(self, elapsed)
-        self.offer_tools()
+        offer_tools(self)
         if self.course is not None:
             self.course.show_card()
 

@@ -221,9 +221,8 @@ class Analysis:
 
         reported: list[State] = []
         try:
-            session.run(steps=0)  # records the beginning, for theory beside the run
-            with session.without_frames(), session.simulation.watched():
-                found = self.run(session.simulation, name, reported)
+            with session.running() as simulation:
+                found = self.run(simulation, name, reported)
         except KeyboardInterrupt:
             return _interrupted(session.simulation, name, reported)
         except ModError as failure:

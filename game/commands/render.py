@@ -23,6 +23,7 @@ from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.view import drawn_places
 from pinjoint.documents.models import replace
 from pinjoint.documents.shapes import numbered
+from pinjoint.editor.view_model import exaggerate
 from pinjoint.session import Session
 from pinjoint.streams import tell
 from pinjoint.systems.base import DEFAULT_LIMIT
@@ -55,6 +56,9 @@ def command(words: Sequence[str]) -> int:
     session.view.all_diagrams = options.diagrams or options.diagrams_of is not None
     session.view.quantity = options.diagrams_of or session.view.quantity
     session.view.utilisation = options.utilisation
+    if options.plain:
+        session.view.has_scale = False
+        session.model.delete(list(session.model.grids))
     draw = _animate if options.output.lower().endswith(".gif") else _draw
     with writing(options.output):
         status = draw(session, options, (width, height))
@@ -75,7 +79,10 @@ def _parser() -> Parser:
         help=tr("the file to write: .png, .svg or .pdf, or .gif to show the run"),
     )
     parser.add_argument(
-        "--size", default="1280x800", metavar="WIDTHxHEIGHT", help=tr("the size in pixels; default 1280x800")
+        "--size",
+        default="1280x800",
+        metavar="WIDTHxHEIGHT",
+        help=tr("the size in pixels; default 1280x800; type grows with it"),
     )
     parser.add_argument(
         "--until-rest", action="store_true", help=tr("run until at rest first (the default of a .gif)")
@@ -139,6 +146,9 @@ def _parser() -> Parser:
         choices=("theme", "white", "transparent"),
         default="theme",
         help=tr("the background, for pictures in reports; default theme"),
+    )
+    parser.add_argument(
+        "--plain", action="store_true", help=tr("leave out the grid, the scale and what is said of scales")
     )
     parser.add_argument("--limit", type=positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
     return parser
@@ -215,7 +225,7 @@ def _animate(session: Session, options: argparse.Namespace, size: tuple[int, int
     _show_shape(session, options)
     until = None if options.until_rest or options.at is None else session.time + options.at
     status, moments = _run(session, until, options.limit)
-    session.exaggerate()
+    exaggerate(session)
     places = []
     for moment in moments:
         moment.restore(session.model)

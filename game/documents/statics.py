@@ -37,6 +37,7 @@ class Statics:
     def __init__(self, model: Model, strain: Callable[[], Column]) -> None:
         self._model, self._strain = model, strain
         self._of: tuple[object, ...] = ()
+        self._seen = -1  # the revision of the model up to which it is known that nothing changed
         self._columns: Mapping[str, Column] = {}
         self._settlement: Settlement | None = None
         self.problem = ""
@@ -108,8 +109,10 @@ class Statics:
     # --- finding -------------------------------------------------------------------------------------
 
     def solve(self) -> None:
-        """Solve anew if the document changed."""
+        """Solve anew if the document changed; asked hundreds of times a picture."""
         model = self._model
+        if self._seen == model.revision:
+            return
         settings, particles = model.tables["settings"], model.tables["particles"]
         wanted = (
             model.newest(Role.DOCUMENT),
@@ -117,12 +120,12 @@ class Statics:
             *(settings.version(name) for name in _CHOICES),
             *(particles.version(name) for name in _MOVED),
         )
-        if wanted == self._of:
-            return
-        self._of = wanted
-        with model.own_state():
-            self._find()
-        self.revision = model.next_revision()
+        if wanted != self._of:
+            self._of = wanted
+            with model.own_state():
+                self._find()
+            self.revision = model.next_revision()
+        self._seen = model.revision
 
     def settled(
         self, theory: str | None = None, load_factors: Sequence[float] | float | None = None

@@ -9,7 +9,7 @@ import operator
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
@@ -246,7 +246,6 @@ class Scenes:
 # --- the context -----------------------------------------------------------------------------------------
 
 _TIME = Time()
-H = TypeVar("H", bound=Handle)
 
 
 class Context:
@@ -403,26 +402,9 @@ class Context:
         """The selected elements, in order of creation."""
         return self.model.tagged(Selected)
 
-    def selected_of(self, *kinds: type[H]) -> list[H]:
-        """Those of the selected elements that are of these kinds."""
-        return [handle for handle in self.selected if isinstance(handle, kinds)]
-
-    @property
-    def has_selected(self) -> bool:
-        """True if anything is selected."""
-        return self.model.any_tagged(Selected)
-
     def select(self, *handles: Handle) -> None:
         """Select exactly these elements; none: deselect."""
         self.model.tag_only(handles, Selected)
-
-    def name(self, *elements: Handle) -> str:
-        """Some elements as a sentence begins with them, such as "Rod AB"."""
-        return begun(heading(self.model, elements))
-
-    def tell(self, value: str, *elements: Handle) -> None:
-        """Let the notice say what elements have now."""
-        self.notice = tr("{element}: {value}", element=self.name(*elements), value=value)
 
     @property
     def clipboard(self) -> str:
@@ -459,11 +441,6 @@ class Context:
         if gesture is not None:
             gesture.leave(self)
 
-    def take_up(self, tool: str) -> None:
-        """Let clicks use a tool from now on; if they use it already, put it away."""
-        self.leave_gesture()
-        self.view.tool = "" if self.view.tool == tool else tool
-
     # --- scene and view ------------------------------------------------------------------------------
 
     @property
@@ -490,8 +467,7 @@ class Context:
         card = self.course.view if self.course is not None else None
         return stages + [(self._blank, view) for view in (self.footer, card) if view is not None]
 
-    def exaggerate(self) -> None:
-        """Let the automatic displacement scale suit the model, but not in the middle of a drag."""
-        still = not self.time_passes or self.simulation.halted
-        if self.gesture is None and self.document.exaggeration.review(still=still) and still:
-            self.view.follow(self.model)
+
+def tell(context: Context, value: str, *elements: Handle) -> None:
+    """Let the notice say what elements have now."""
+    context.notice = tr("{element}: {value}", element=begun(heading(context.model, elements)), value=value)

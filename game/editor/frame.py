@@ -8,6 +8,7 @@ from typing import Any
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
 from pinjoint.editor.context import Context
+from pinjoint.editor.view_model import exaggerate, follows
 from pinjoint.systems.base import Phase, System
 from pinjoint.systems.input.actions import TEXT
 
@@ -54,7 +55,7 @@ class Exaggerate(System):
 
     def process(self, frame: Any) -> None:
         """Choose the scale anew where the model was edited, or has come to a stand."""
-        frame.session.exaggerate()
+        exaggerate(frame.session)
 
 
 class Actions(System):
@@ -71,7 +72,8 @@ class Actions(System):
     def process(self, frame: Any) -> None:
         """Let the view follow, perform the actions of the frame in their order, then let the scene change."""
         session = frame.session
-        session.follow()
+        if follows(session):
+            session.press_named("home", None)  # recorded as the key that does so
         for key, pixel in frame.pressed if session.footer is None else ():
             if not key.startswith(TEXT):
                 self._keyed = session.scene

@@ -6,14 +6,16 @@ from collections.abc import Iterable, Sequence
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
+from pinjoint.components.tags import Selected
 from pinjoint.components.toolbar import Menu, Tool, Toolbar
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import tool_in_hand
 from pinjoint.systems.edit.dividing import DIVISIONS
 from pinjoint.systems.edit.rods import is_rigid, share_at
+from pinjoint.systems.forms.properties import heading
 from pinjoint.systems.input.actions import ACTIONS, FORCE_METHOD, FORMS
 
 PLACE = "place"  # the tools of mods stand at the end of its group, their other buttons in a group of their own
@@ -82,8 +84,8 @@ Groups = Iterable[Sequence[Entry]]
 
 def menu_at(context: Context, pixel: Vector) -> Menu:
     """The menu of the selected elements, or of the canvas, opened at a pixel."""
-    groups = _of_selection(context, pixel) if context.has_selected else _of_canvas(context)
-    title = context.name(*context.selected) if context.has_selected else ""
+    groups = _of_selection(context, pixel) if context.model.any_tagged(Selected) else _of_canvas(context)
+    title = begun(heading(context.model, context.selected)) if context.model.any_tagged(Selected) else ""
     if context.scene == FORCE_METHOD:
         groups, title = [[("pick unknown", marked("release this"))], *actions_of_toolbar(context)], ""
     entries = ([(entry, "") if isinstance(entry, str) else entry for entry in group] for group in groups)
@@ -93,7 +95,11 @@ def menu_at(context: Context, pixel: Vector) -> Menu:
 
 def _of_selection(context: Context, pixel: Vector) -> Groups:
     """What the elements have in common comes first."""
-    particles, rods, alone = context.selected_of(Particle), context.selected_of(Rod), len(context.selected) == 1
+    particles, rods, alone = (
+        context.model.tagged(Selected, Particle),
+        context.model.tagged(Selected, Rod),
+        len(context.selected) == 1,
+    )
     turns = bool(particles) and bool(rigid_joints(context.model)[[one.row for one in particles]].any())
     results = [
         ("toggle diagrams", marked("force diagram")),

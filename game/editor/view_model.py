@@ -17,6 +17,8 @@ from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, 
 from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import DrawRod
 from pinjoint.editor.readouts import readouts
+from pinjoint.editor.sliders import slider_stack
+from pinjoint.editor.toolbar import toolbar_of
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
@@ -32,6 +34,21 @@ MOST_WATCHED = 2000  # particles, up to which it is told that they left the pict
 MOST_NAMED = 3  # of these, by their names
 FARTHEST = 8.0  # times: by how much the view shows more than the original structure to follow what moves
 MOST_FLASHES = 500  # impacts marked at a time
+
+
+def offer_tools(context: Context) -> None:
+    """Let toolbar, sliders and help show what can be done now; what is not seen stays as it was."""
+    view = context.view
+    view.keys = tuple(ACTIONS.help_lines(context.scene)) if view.help else ()
+    if not context.scenes.active.covers(context):
+        view.toolbar, view.sliders = toolbar_of(context), slider_stack(context)
+
+
+def exaggerate(context: Context) -> None:
+    """Let the automatic displacement scale suit the model, but not in the middle of a drag."""
+    still = not context.time_passes or context.simulation.halted
+    if context.gesture is None and context.document.exaggeration.review(still=still) and still:
+        context.view.follow(context.model)
 
 
 def show(context: Context, elapsed: float) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pinjoint.components.field import Vector
-from pinjoint.lessons.course import Course
+from pinjoint.lessons.course import Course, leave_lesson
 from pinjoint.lessons.progress import after
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.edit import Refusal
@@ -76,7 +76,7 @@ action("task again", "f8", "begin the task again")(lambda session, pixel: _cours
 def _leave(session: Session, pixel: Vector) -> None:
     """Back to the document that was open before; where there was none, to the start page."""
     _course(session)
-    session.leave_lesson()
+    leave_lesson(session)
     if session.document.practice:
         session.scenes.request("load")
 

@@ -13,6 +13,7 @@ from pinjoint.components.view import Card, Shape, View
 from pinjoint.documents.document import document
 from pinjoint.documents.models import ModelError, load
 from pinjoint.documents.open_documents import ModelFile
+from pinjoint.editor.view_model import offer_tools
 from pinjoint.lessons import progress
 from pinjoint.lessons.judging import Answer, Document, Verdict, filled, judge, named, said_of
 from pinjoint.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Lesson, Line, Task
@@ -106,7 +107,7 @@ class Course:
         session.select()
         self._begun = document(session.model)
         self._unit = said_of(session, task.asked[0])[0] if task.kind == NUMBER else ""
-        session.offer_tools()
+        offer_tools(session)
 
     def _forget(self) -> None:
         """Begin to answer anew."""
@@ -340,3 +341,41 @@ class Course:
             Tool("task again", tr("Again"), "F8"),
             Tool("leave lesson", tr("Leave"), "F9"),
         )
+
+
+def take_up_lesson(session: Any) -> None:
+    """Begin the lesson with tasks that a person chose, where it was left; one to watch puts away that which is there."""
+    script = session.lesson
+    if script is None or not (script.task_count or script.name):
+        return
+    if not script.task_count:
+        _seat(session, None)
+        return
+    session.lesson = None
+    try:
+        _seat(session, Course(session, Lesson(script)))
+        session.course.begin()
+        session.course.show_card()
+    except ScriptError as error:
+        leave_lesson(session)
+        session.notice = str(error)
+
+
+def leave_lesson(session: Any) -> None:
+    """Leave the lesson for the document that was open before it."""
+    _seat(session, None)
+    if session.scene != "pause":
+        session.scenes.request("pause")
+        session.scenes.apply(session)
+    session.leave_gesture()
+    documents = session.documents
+    while session.document.practice and documents.can_move(-1):
+        documents.move(-1)
+    documents.on_begin()
+
+
+def _seat(session: Any, course: Course | None) -> None:
+    """Let the window have room for the card of a course, or for none."""
+    if session.course is not course:
+        session.course = course
+        session.resize(*session.extent, session.view.pixel_ratio)

@@ -114,7 +114,10 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
         session.resize(int(width), int(height))
         session.view.fit(session.model)
     if "at" in rest or "within" in rest:
-        session.go_to(rest.pop("at", session.simulation.moment[0]), rest.pop("within", None))
+        moment = rest.pop("at", session.simulation.moment[0]), rest.pop("within", None)
+        if moment != session.simulation.moment:
+            with session.running() as simulation:
+                simulation.go_to(*moment)
     if "over" in rest:
         session.point(*rest.pop("over"))
     if "clipboard" in rest:

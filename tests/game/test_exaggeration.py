@@ -9,6 +9,7 @@ import pytest
 from pinjoint.components.view import drawn_positions
 from pinjoint.documents import models
 from pinjoint.documents.exaggeration import DRAWN, Exaggeration
+from pinjoint.editor.view_model import exaggerate
 from pinjoint.session import Session
 
 STIFF = [
@@ -34,7 +35,7 @@ def truss(**changes: Any) -> dict[str, Any]:
 
 def reviewed(source: Any) -> Session:
     session = Session.open(source)
-    session.exaggerate()
+    exaggerate(session)
     return session
 
 
@@ -49,7 +50,7 @@ def drawn_share(session: Session) -> float:
 def test_stiff_structures_at_rest_are_drawn_with_a_visible_displacement(name: str) -> None:
     session = reviewed(name)
     session.settle()
-    session.exaggerate()
+    exaggerate(session)
     assert 0.03 <= drawn_share(session) <= DRAWN
 
 
@@ -57,7 +58,7 @@ def test_stiff_structures_at_rest_are_drawn_with_a_visible_displacement(name: st
 def test_large_motions_loose_particles_and_collapses_are_true_to_scale(name: str) -> None:
     session = Session.open(name)
     session.settings.displacement_scale = None
-    session.exaggerate()
+    exaggerate(session)
     # Before it buckles or snaps, a frame moves little; its file says how it is drawn.
     small = {"three_bar_plastic": 100.0, "hyperstatic_yield": 50.0, "overshoot_yield": 5.0}
     small |= {"eulers_columns": 100.0, "williams_toggle": 20.0, "gerber_beam": 50.0, "sway_resonance": 100.0}
@@ -78,7 +79,7 @@ def test_factors_are_round_steps_and_steady_under_loads_that_change_little() -> 
     session, seen = reviewed(truss()), []
     for force in range(4, 280, 4):  # beyond it yields and collapses
         session.particles["B"].force = (0.0, -float(force))
-        session.exaggerate()
+        exaggerate(session)
         seen.append(session.settings.displacement_scale)
     assert set(seen) <= {50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0}
     changes = sum(a != b for a, b in itertools.pairwise(seen))
@@ -98,10 +99,10 @@ def test_it_does_not_change_in_the_middle_of_a_drag() -> None:
     session.press("space")
     session.gesture = object()  # type: ignore[assignment]
     session.particles["B"].force = (0.0, -1e5)
-    session.exaggerate()
+    exaggerate(session)
     assert session.settings.displacement_scale == 100.0
     session.gesture = None
-    session.exaggerate()
+    exaggerate(session)
     assert session.settings.displacement_scale < 100.0
 
 
@@ -134,7 +135,7 @@ def test_a_vibration_without_load_is_seen_by_its_amplitude() -> None:
     session.particles["B"].force = (0.0, 0.0)
     session.particles.velocity  # noqa: B018
     session.model.writable("particles.velocity")[1] = (0.3, 0.0)
-    session.exaggerate()
+    exaggerate(session)
     assert session.settings.displacement_scale > 10.0
 
 
@@ -150,7 +151,7 @@ def test_a_large_structure_is_looked_at_and_not_computed(monkeypatch: pytest.Mon
     session = reviewed(truss())
     assert session.settings.displacement_scale == 1.0
     session.settle()
-    session.exaggerate()
+    exaggerate(session)
     assert session.settings.displacement_scale == 100.0
 
 

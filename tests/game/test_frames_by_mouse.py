@@ -7,6 +7,7 @@ from pinjoint import Session
 from pinjoint.components.camera import Viewport
 from pinjoint.components.view import drawn_positions
 from pinjoint.documents.document import document
+from pinjoint.editor.view_model import offer_tools
 from pinjoint.systems.edit.picking import RING
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
@@ -21,7 +22,7 @@ def opened(source: object = EMPTY) -> Session:
     session = Session.open(source)  # type: ignore[arg-type]
     session.view.camera.viewport = Viewport(0, 0, 1024, 640)
     session.view.fit(session.model)
-    session.offer_tools()
+    offer_tools(session)
     return session
 
 

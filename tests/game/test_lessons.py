@@ -14,7 +14,7 @@ from pinjoint.components.language import spoken
 from pinjoint.components.model import Model
 from pinjoint.lessons import progress
 from pinjoint.lessons.checking import check_lesson
-from pinjoint.lessons.course import Course
+from pinjoint.lessons.course import Course, take_up_lesson
 from pinjoint.scripts.lines import perform
 from pinjoint.scripts.script import TO_DO, Script, ScriptError, lessons
 from pinjoint.systems.render.marks import Text
@@ -42,7 +42,7 @@ def begun(session: Session, name: str, task: int = 1) -> Course:
 def taken_up(session: Session, name: str) -> Course:
     """A lesson, where the person left it."""
     session.lesson = Script(name)
-    session.take_up_lesson()
+    take_up_lesson(session)
     assert session.course is not None
     return session.course
 
@@ -505,9 +505,9 @@ def test_every_joint_that_a_task_speaks_of_has_its_name_on_the_picture(
 def test_a_film_puts_a_lesson_away_but_not_its_solution(session: Session) -> None:
     course = begun(session, "03_stable_or_mechanism", 2)
     session.lesson = Script.of_lines("how", course.task.solution)
-    session.take_up_lesson()
+    take_up_lesson(session)
     assert session.course is course
     session.lesson = Script("2_yield_and_unload")
-    session.take_up_lesson()
+    take_up_lesson(session)
     assert session.course is None
     assert session.view.camera.viewport.width == session.extent[0]

@@ -12,6 +12,7 @@ from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.scenes.load import LESSONS
+from pinjoint.lessons.course import take_up_lesson
 from pinjoint.scripts.performance import FOOTER, Performance
 from pinjoint.scripts.playing import play, session_of
 from pinjoint.scripts.script import Script, lessons
@@ -137,7 +138,7 @@ def test_a_lesson_is_chosen_from_the_pictures() -> None:
 def test_after_a_task_was_shown_only_its_card_says_what_to_do(app: App) -> None:
     session = app.session
     session.lesson = Script("03_stable_or_mechanism")
-    session.take_up_lesson()
+    take_up_lesson(session)
     session.course.begin(1)
     session.press("f7")
     script, session.lesson = session.lesson, None

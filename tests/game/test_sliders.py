@@ -8,6 +8,7 @@ import pytest
 from pinjoint.components.slider import Place, Slider
 from pinjoint.documents import models
 from pinjoint.editor.sliders import add_slider
+from pinjoint.editor.view_model import exaggerate, offer_tools
 from pinjoint.session import Session
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick
@@ -24,7 +25,7 @@ def opened(*sliders: dict[str, Any], name: str = "isostatic") -> Session:
 
 
 def place(session: Session, title: str) -> Place:
-    session.offer_tools()
+    offer_tools(session)
     return next(p for p in session.view.slider_places if title in p.control.title)
 
 
@@ -47,7 +48,7 @@ def slide(session: Session, title: str, *shares: float) -> None:
 def test_the_displacement_scale_is_dragged_and_goes_back_to_automatic() -> None:
     session = opened()
     where = place(session, "displacements")
-    session.exaggerate()
+    exaggerate(session)
     assert (place(session, "displacements").control.value, where.control.pressed) == ("× 100", True)
     slide(session, "displacements", 0.0)
     assert session.settings.displacement_scale == 1.0
@@ -271,7 +272,7 @@ def test_a_slider_of_a_deleted_element_is_gone_until_undo() -> None:
     assert place(session, "top: load x")
     session.select(session.particles["top"])
     session.press("delete")
-    session.offer_tools()
+    offer_tools(session)
     assert not [p for p in session.view.slider_places if "force" in p.control.title]
     assert [entry["of"] for entry in models.document(session.model)["sliders"]] == ["rods.*.stiffness"]
     session.undo()

@@ -47,6 +47,13 @@ def test_masses_and_distances_can_be_too_small() -> None:
     assert "Particle A: mass is 1.70711e-40 kg, too small" in incomputable(session.model)
 
 
+def test_a_weight_that_leaves_no_rotational_inertia_is_named() -> None:
+    session = Session.open("portal")
+    session.rods.density, session.particles.mass = 5e-324, 1.0  # inertia 0 would let joints turn without end
+    assert session.run(steps=1) == "diverged"
+    assert "density is 4.94066e-324 kg/m, too small" in session.message
+
+
 def test_no_analysis_computes_with_them(answer: Any, tmp_path: Path) -> None:
     session = Session.open("isostatic")
     session.rods["AB"].plastic_strain = 1e300

@@ -124,7 +124,8 @@ def test_frame_rate_changes_nothing(title: str) -> None:
         sessions.append(session)
     last = max(session.model.clock.steps for session in sessions)
     for session in sessions:
-        session.go_to(last)
+        with session.running() as simulation:
+            simulation.go_to(last, None)
         assert_same(session, sessions[0])
 
 

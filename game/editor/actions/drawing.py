@@ -7,17 +7,19 @@ from operator import attrgetter
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.grid import Grid
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import HUBS
-from pinjoint.editor.context import Context
-from pinjoint.editor.gestures.drawing import DrawForce, DrawMoment, DrawRod, DrawVelocity, tool_in_hand
+from pinjoint.components.tags import Selected
+from pinjoint.editor.context import Context, tell
+from pinjoint.editor.gestures.drawing import DrawForce, DrawMoment, DrawRod, DrawVelocity, take_up, tool_in_hand
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, pick_rod
 from pinjoint.systems.edit.placing import place, snapped
 from pinjoint.systems.edit.rods import is_rigid, set_rigid, share_at, toggle_hinge, toggle_joint
 from pinjoint.systems.edit.supports import next_support
+from pinjoint.systems.forms.properties import heading
 from pinjoint.systems.input.actions import actions_of
 
 action = actions_of("Draw")
@@ -33,11 +35,11 @@ action = actions_of("Draw")
 def _place(context: Context, pixel: Vector) -> None:
     """A particle under the pointer; from the toolbar, under the clicks that follow."""
     if context.view.strip.contains(pixel):
-        context.take_up("place")
+        take_up(context, "place")
         return
     model, view = context.model, context.view
     particle = place(model, view, snapped(model, view, view.camera.to_model(pixel)))
-    context.tell(written.place(particle.position, written.DIGITS), particle)
+    tell(context, written.place(particle.position, written.DIGITS), particle)
 
 
 # The status line names the kind of rods, too.
@@ -48,7 +50,7 @@ action("rod", "l", "draw a rod between two particles", while_drawing=True, draws
 
 def _are_rigid(context: Context) -> bool:
     """Whether the selected rods, or else those that will be drawn, are rigid at both ends."""
-    rods = [] if tool_in_hand(context) == DrawRod.tool else context.selected_of(Rod)
+    rods = [] if tool_in_hand(context) == DrawRod.tool else context.model.tagged(Selected, Rod)
     return all(is_rigid(rod, end) for rod in rods for end in (0, 1)) if rods else context.view.rigid
 
 
@@ -61,13 +63,13 @@ def _rigid(context: Context, pixel: Vector) -> None:
     In an empty model it always leads to rods that bend, as its card promises, also where these were the last drawn.
     """
     drawing = DrawRod.tool in (tool_in_hand(context), context.view.tool)
-    rods = [] if drawing else context.selected_of(Rod)
+    rods = [] if drawing else context.model.tagged(Selected, Rod)
     if not rods:
         context.view.rigid = not (context.view.rigid and (drawing or context.model.rods.count))
         if isinstance(context.gesture, DrawRod):
             context.gesture.say(context)
         elif context.view.rigid and not drawing:
-            context.take_up(DrawRod.tool)
+            take_up(context, DrawRod.tool)
         context.notice = (
             tr("New rods will be rigid at both ends.")
             if context.view.rigid
@@ -78,7 +80,7 @@ def _rigid(context: Context, pixel: Vector) -> None:
     rigid = not all(is_rigid(*end) for end in ends)
     set_rigid(context.model, ends, rigid, tr("rigid joints") if rigid else tr("hinges"))
     context.view.rigid = rigid
-    named, section = context.name(*rods), rods[0].section
+    named, section = begun(heading(context.model, rods)), rods[0].section
     if not rigid:
         context.notice = tr("{rods}: pinned at both ends", rods=named)
     elif section is None:
@@ -99,21 +101,21 @@ def _hinge(context: Context, pixel: Vector) -> None:
     """Hinge the rod's end under the pointer, or make it rigid; at a particle all ends there; else take up the tool."""
     model, view = context.model, context.view
     if (particle := pick_particle(model, view, pixel)) is not None:
-        context.tell(tr(toggle_joint(model, particle)), particle)
+        tell(context, tr(toggle_joint(model, particle)), particle)
     elif (end := _end_at(context, pixel)) is not None:
-        context.tell(tr(toggle_hinge(model, *end)), end[0])
+        tell(context, tr(toggle_hinge(model, *end)), end[0])
     elif view.tool == "hinge" and not view.covers(pixel):
         raise Refusal(
             "Click near the end of a rod, where a ring appears, or on a joint. Esc puts the tool away."
         )
     else:
-        context.take_up("hinge")
+        take_up(context, "hinge")
 
 
 def _end_at(context: Context, pixel: Vector) -> tuple[Rod, int] | None:
     """The end of a rod near a pixel; in a menu of one rod, the nearer one."""
     found = pick_end(context.model, context.view, pixel)
-    rods = context.selected_of(Rod)
+    rods = context.model.tagged(Selected, Rod)
     if found is None and context.view.tool != "hinge" and len(rods) == 1:
         rod = pick_rod(context.model, context.view, pixel)
         share = share_at(rods[0], context.view.camera.to_model(pixel))
@@ -131,13 +133,13 @@ def _end_at(context: Context, pixel: Vector) -> tuple[Rod, int] | None:
 def _support(context: Context, pixel: Vector) -> None:
     """The next support of the particle under the pointer, else of the selected ones; without any, take up the tool."""
     hit = pick_particle(context.model, context.view, pixel)
-    chosen = context.selected_of(Particle)
+    chosen = context.model.tagged(Selected, Particle)
     if hit is not None and hit not in chosen:
         chosen = [hit]
     if not chosen:
-        context.take_up("support")
+        take_up(context, "support")
         return
-    context.tell(tr(next_support(context.model, chosen)), *chosen)
+    tell(context, tr(next_support(context.model, chosen)), *chosen)
 
 
 action(

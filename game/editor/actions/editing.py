@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from functools import partial
-from operator import attrgetter
 
 import numpy as np
 
 from pinjoint.components import written
 from pinjoint.components.field import Vector
-from pinjoint.components.language import listed, marked, plural, tr
+from pinjoint.components.language import begun, listed, marked, plural, tr
 from pinjoint.components.settings import HUBS, PAUSE, STATICS
+from pinjoint.components.tags import Selected
 from pinjoint.editor.clipboard import Part
-from pinjoint.editor.context import Context
+from pinjoint.editor.context import Context, tell
 from pinjoint.editor.gestures.drawing import Drawing, DrawSupport, tool_in_hand
 from pinjoint.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
 from pinjoint.editor.scenes.properties import Properties
@@ -21,7 +21,7 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
 from pinjoint.systems.edit.placing import Movable, nudged, snapped
 from pinjoint.systems.edit.rods import delete
-from pinjoint.systems.forms.properties import counted
+from pinjoint.systems.forms.properties import counted, heading
 from pinjoint.systems.input.actions import (
     ACTIONS,
     IN_LESSONS,
@@ -38,6 +38,10 @@ BESIDE = 30.0  # points to the right and down, where a duplicate appears
 
 
 # --- the pointer -----------------------------------------------------------------------------------------
+
+
+def _any_selected(context: Context) -> bool:
+    return context.model.any_tagged(Selected)
 
 
 @action("select", "click", "select", while_drawing=True)
@@ -172,7 +176,7 @@ def _escape(context: Context, pixel: Vector) -> None:
         context.document.shapes.hide()
     elif context.scene == "simulation":
         context.scenes.request("pause")
-    elif context.has_selected:
+    elif _any_selected(context):
         context.select()
     elif context.scene == STATICS:
         context.notice = tr("Nothing is selected. Q leaves statics, F1 shows all keys.")
@@ -194,13 +198,13 @@ def _properties(context: Context, pixel: Vector) -> None:
     context.scenes.request_from_pause("properties")
 
 
-@action("delete", ("delete", "backspace"), "delete the selection", enabled=attrgetter("has_selected"))
+@action("delete", ("delete", "backspace"), "delete the selection", enabled=_any_selected)
 def _delete(context: Context, pixel: Vector) -> None:
     doomed = context.selected
     if not doomed:
         raise Refusal("Nothing is selected; first click what you want to delete.")
     before = {table.name: table.count for table in context.model.tables.values()}
-    named = context.name(doomed[0])
+    named = begun(heading(context.model, [doomed[0]]))
     delete(context.model, doomed)
     gone = {name: count - context.model.tables[name].count for name, count in before.items()}
     if sum(gone.values()) == 1:
@@ -222,7 +226,7 @@ def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
     moved = [*chosen.particles, *chosen.others]
     with context.document.history.as_one(("nudge", *(handle.entity for handle in moved))):
         chosen.place(positions)
-    context.tell(written.place(positions[0], written.DIGITS), *moved)
+    tell(context, written.place(positions[0], written.DIGITS), *moved)
     return True
 
 
@@ -232,7 +236,7 @@ def _move(direction: Vector, far: bool, always: bool, context: Context, pixel: V
         return
     if always:
         raise Refusal("Nothing that can be moved is selected; click a particle or a rod first.")
-    if context.has_selected:
+    if _any_selected(context):
         raise Refusal(
             "Once a run has begun, arrow keys step through time. Ctrl with an arrow moves the selection; R goes back"
             " to the beginning."
@@ -280,7 +284,7 @@ def _select_all(context: Context, pixel: Vector) -> None:
     context.notice = plural("{count} element selected.", "{count} elements selected.", len(chosen))
 
 
-@action("copy", "ctrl+c", "copy the selection", enabled=attrgetter("has_selected"))
+@action("copy", "ctrl+c", "copy the selection", enabled=_any_selected)
 def _copy(context: Context, pixel: Vector) -> None:
     context.clipboard = Part.selected(context.model).text
     context.notice = tr("Copied. Ctrl+V pastes it at the pointer.")
@@ -312,7 +316,7 @@ def _paste(context: Context, pixel: Vector) -> None:
     )
 
 
-@action("duplicate", "ctrl+d", "duplicate the selection", enabled=attrgetter("has_selected"))
+@action("duplicate", "ctrl+d", "duplicate the selection", enabled=_any_selected)
 def _duplicate(context: Context, pixel: Vector) -> None:
     view = context.view
     beside = BESIDE * view.pixel_ratio / view.camera.scale

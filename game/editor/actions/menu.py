@@ -7,11 +7,12 @@ from functools import partial
 from operator import attrgetter
 
 from pinjoint.components.field import Vector
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import HUBS
-from pinjoint.editor.context import Context
+from pinjoint.components.tags import Selected
+from pinjoint.editor.context import Context, tell
 from pinjoint.editor.scenes.force_method import ForceMethod
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.dividing import DIVISIONS, divide, divide_at
@@ -19,6 +20,7 @@ from pinjoint.systems.edit.picking import pick_rod
 from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import share_at, weigh_along
 from pinjoint.systems.edit.supports import SUPPORTS, Held, held, support
+from pinjoint.systems.forms.properties import heading
 from pinjoint.systems.input.actions import ACTIONS, MENU, actions_of
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.menu import entry_beside, pointed_at
@@ -58,16 +60,16 @@ def _environment(context: Context, pixel: Vector) -> None:
 
 def _are_held(wanted: Held, context: Context) -> bool:
     """Whether all selected particles have a support."""
-    particles = context.selected_of(Particle)
+    particles = context.model.tagged(Selected, Particle)
     return bool(particles) and all(held(particle) == wanted for particle in particles)
 
 
 def _hold(wanted: Held, context: Context, pixel: Vector) -> None:
     """Give all selected particles a support."""
-    particles = context.selected_of(Particle)
+    particles = context.model.tagged(Selected, Particle)
     if not particles:
         raise Refusal("No particle is selected; click one first.")
-    context.tell(tr(support(context.model, particles, wanted)), *particles)
+    tell(context, tr(support(context.model, particles, wanted)), *particles)
 
 
 for _wanted, (_name, _title) in SUPPORTS.items():
@@ -76,7 +78,7 @@ for _wanted, (_name, _title) in SUPPORTS.items():
 
 
 def _selected(context: Context) -> list[Rod]:
-    rods = context.selected_of(Rod)
+    rods = context.model.tagged(Selected, Rod)
     if not rods:
         raise Refusal("No rod is selected; click one first.")
     return rods
@@ -88,7 +90,10 @@ def _split(context: Context, pixel: Vector) -> None:
     rod = pick_rod(context.model, context.view, pixel)
     if rod is None:
         raise Refusal("There is no rod under the pointer; point at one.")
-    name, point = context.name(rod), snapped(context.model, context.view, context.view.camera.to_model(pixel))
+    name, point = (
+        begun(heading(context.model, [rod])),
+        snapped(context.model, context.view, context.view.camera.to_model(pixel)),
+    )
     parts = divide_at(context.model, rod, [round(share_at(rod, point), 6)])
     context.select(parts[0].ends[1])
     context.notice = tr("{rod}: divided at {particle}", rod=name, particle=parts[0].ends[1].name)
@@ -97,27 +102,27 @@ def _split(context: Context, pixel: Vector) -> None:
 @offer("weight along", "", "add its weight as a distributed load", enabled=attrgetter("model.rods.count"))
 def _weight_along(context: Context, pixel: Vector) -> None:
     """Let the selected rods, without any all, bear their weight along them."""
-    context.notice = weigh_along(context.model, context.selected_of(Rod) or list(context.model.rods))
+    context.notice = weigh_along(context.model, context.model.tagged(Selected, Rod) or list(context.model.rods))
 
 
 @offer(
     "toggle cable",
     "",
     "cable: tension only",
-    pressed=lambda context: {rod.tension_only for rod in context.selected_of(Rod)} == {True},
+    pressed=lambda context: {rod.tension_only for rod in context.model.tagged(Selected, Rod)} == {True},
 )
 def _toggle_cable(context: Context, pixel: Vector) -> None:
     """Let the selected rods bear tension only, or if all do so, compression as well."""
     rods = _selected(context)
     cable = not all(rod.tension_only for rod in rods)
     context.model.assign(rods, "tension_only", cable)
-    context.tell(tr("tension only, as a cable") if cable else tr("tension and compression"), *rods)
+    tell(context, tr("tension only, as a cable") if cable else tr("tension and compression"), *rods)
 
 
 def _divide(parts: int, context: Context, pixel: Vector) -> None:
     """Divide the selected rods, and select their parts."""
     rods = _selected(context)
-    named = context.name(*rods)
+    named = begun(heading(context.model, rods))
     context.select(*divide(context.model, rods, parts))
     context.notice = (
         tr("{rod}: divided into {parts} parts", rod=named, parts=parts)
@@ -131,14 +136,14 @@ for _parts, _title in DIVISIONS.items():
         _title,
         "",
         _title,
-        enabled=lambda context: any(rod.bending_stiffness > 0.0 for rod in context.selected_of(Rod)),
+        enabled=lambda context: any(rod.bending_stiffness > 0.0 for rod in context.model.tagged(Selected, Rod)),
     )(partial(_divide, _parts))
 
 
 @offer("release", "", "release it in the force method", HUBS)
 def _release(context: Context, pixel: Vector) -> None:
     """Begin the force method with the selected rod as the static unknown."""
-    rods, scene = context.selected_of(Rod), context.scenes["force method"]
+    rods, scene = context.model.tagged(Selected, Rod), context.scenes["force method"]
     if len(rods) != 1:
         raise Refusal("Select one rod only: the one that is to be released.")
     assert isinstance(scene, ForceMethod)

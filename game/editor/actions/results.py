@@ -14,7 +14,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, has_strength
 from pinjoint.components.settings import DIAGRAMS, HUBS, PAUSE, STATICS
-from pinjoint.components.tags import DiagramShown
+from pinjoint.components.tags import DiagramShown, Selected
 from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.documents.shapes import NoShape
 from pinjoint.editor.actions.view import toggle
@@ -29,9 +29,9 @@ action = actions_of("Results", while_drawing=True)
 
 def shows_diagrams(context: Context) -> bool:
     """True if there are diagrams of what is selected, else of anything."""
-    if context.has_selected and not context.view.all_diagrams:
+    if context.model.any_tagged(Selected) and not context.view.all_diagrams:
         shown = {handle.entity for handle in context.model.tagged(DiagramShown)}
-        return {handle.entity for handle in context.selected_of(Particle, Rod)} <= shown
+        return {handle.entity for handle in context.model.tagged(Selected, Particle, Rod)} <= shown
     return context.view.all_diagrams or context.model.any_tagged(DiagramShown)
 
 
@@ -60,7 +60,7 @@ def _toggle_diagrams(context: Context, pixel: Vector) -> None:
     apart = view.put_together()
     if apart and (view.all_diagrams or model.any_tagged(DiagramShown)):
         return
-    if view.all_diagrams or not context.has_selected:
+    if view.all_diagrams or not context.model.any_tagged(Selected):
         view.all_diagrams = _following(context, view.all_diagrams)
         model.tag_only([], DiagramShown)
         return

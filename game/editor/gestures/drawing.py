@@ -9,11 +9,12 @@ from typing import Any, ClassVar
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import joined, marked, plural, tr
+from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
+from pinjoint.components.tags import Selected
 from pinjoint.components.view import BETWEEN, Preview, drawn_positions
-from pinjoint.editor.context import Context, Gesture
+from pinjoint.editor.context import Context, Gesture, tell
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.arrows import (
     arrow_end,
@@ -58,7 +59,7 @@ class Drawing(Gesture):
         context.leave_gesture()
         context.gesture = cls.begin(context, pixel)
         if context.gesture is None:
-            context.take_up(cls.tool)
+            take_up(context, cls.tool)
 
     def start(self, context: Context) -> Vector:
         """Where it begins (m), as it is drawn. Raises Refusal if that particle was deleted."""
@@ -126,7 +127,7 @@ class DrawRod(Drawing):
         with_new = plural("with one new particle", "with {count} new particles", made) if made else ""
         made_of = (rod.section or tr("rigid")) if view.rigid else ""
         said = [written.length(rod.rest_length, written.DIGITS), made_of, with_new]
-        context.tell(joined(said, ", "), rod)
+        tell(context, joined(said, ", "), rod)
 
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; a click where a chain of rods has come to ends the chain."""
@@ -191,7 +192,7 @@ class DrawArrow(Drawing):
         value, elements = self.value(context, pixel), [one for one in self.elements if one.exists]
         if elements:
             context.model.assign(elements, self.field, [value] * len(elements))
-            named, rods = elements[0].name, context.name(*elements)
+            named, rods = elements[0].name, begun(heading(context.model, elements))
             said = self.shown(value)
             context.notice = tr(self.says, particle=named, rods=rods, value=said, load=said)
 
@@ -214,7 +215,7 @@ class DrawForce(DrawArrow):
         rod = pick_rod(context.model, context.view, pixel) if begun is None else None
         if rod is None or context.view.covers(pixel):
             return begun
-        rods = context.selected_of(Rod)
+        rods = context.model.tagged(Selected, Rod)
         return DrawDistributedForce(
             context, context.view.camera.to_model(pixel), *(rods if rod in rods else [rod])
         )
@@ -323,7 +324,7 @@ class DrawElement(Drawing):
         first, last = self.kind.points
         [made] = context.model.create(self.kind, 1, **{first: [start], last: [end]})
         context.select(made)
-        context.tell(_length_and_angle(start, end), made)
+        tell(context, _length_and_angle(start, end), made)
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         start, end = self.start(context), snapped_to_points(context.model, context.view, pixel)
@@ -351,7 +352,7 @@ class DrawSupport(Drawing):
 
     def __init__(self, context: Context, particle: Particle) -> None:
         super().__init__(context, particle)
-        self.particle, selected = particle, context.selected_of(Particle)
+        self.particle, selected = particle, context.model.tagged(Selected, Particle)
         self._particles = selected if particle in selected else [particle]
         self._turns = bool(rigid_joints(context.model)[particle.row])
         farther = tr("farther away: cannot turn, too") if self._turns else ""
@@ -366,7 +367,7 @@ class DrawSupport(Drawing):
             if wanted is None
             else support(context.model, particles, wanted)
         )
-        named, more = context.name(self.particle), len(particles) - 1
+        named, more = begun(heading(context.model, [self.particle])), len(particles) - 1
         named = tr("{element} and {count} more", element=named, count=more) if more > 0 else named
         context.notice = tr("{element}: {value}", element=named, value=tr(name))
 
@@ -398,6 +399,12 @@ class DrawSupport(Drawing):
         reach = PARTICLE_REACH * context.view.pixel_ratio / context.view.camera.scale
         along = end[0] - start[0], end[1] - start[1]
         return along if math.hypot(*along) > max(reach, self.particle.radius) else None
+
+
+def take_up(context: Context, tool: str) -> None:
+    """Let clicks use a tool from now on; if they use it already, put it away."""
+    context.leave_gesture()
+    context.view.tool = "" if context.view.tool == tool else tool
 
 
 def tool_in_hand(context: Context) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.view import Preview, drawn_positions
 from pinjoint.editor.context import Context, Gesture
@@ -18,6 +18,7 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import Grip, inside
 from pinjoint.systems.edit.placing import Movable, check_free, snapped, snapped_to_points
 from pinjoint.systems.edit.pull import Hand
+from pinjoint.systems.forms.properties import heading
 from pinjoint.systems.physics.pace import natural_pace
 
 
@@ -96,7 +97,7 @@ class MovePoint(Placing):
         named = tr(context.model.tables[element.table].fields[point].title)
         return tr(
             "{element}, {point}: {place}",
-            element=context.name(element),
+            element=begun(heading(context.model, [element])),
             point=named,
             place=written.place(target, written.DIGITS),
         )

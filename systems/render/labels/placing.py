@@ -24,10 +24,7 @@ _LENGTHS = (14.0, 26.0, 40.0, 58.0, 80.0, 110.0, 150.0, 200.0)  # points
 _USUAL = 5  # of these lengths, of lines from values in their usual type
 _STEP, _HALF = 4.0, 1.5  # points between the places where a line is tested; half the room it needs there
 _CLEAR, _OFF_DIAGRAMS = 3.0, 1.0  # points between a value and all else
-_NEAR_NUMBERS = (
-    (0.5, -1.0, 0.5),
-    (0.5, -1.0, -1.0),
-)  # points from numbers to lines, diagrams and symbols of others
+_NEAR_NUMBERS = (0.5, -1.0, 0.5), (0.5, -1.0, -1.0)  # points from numbers to lines, diagrams, symbols of others
 _STAGES = 0, 3, 1000
 _COVERED = {"cover": (STRONG,), "spare": (FAINT, STRONG), "avoid": (0,)}  # by each attempt, at most
 
@@ -65,9 +62,7 @@ class Label(NamedTuple):
     short: str = ""
 
 
-Numbered = tuple[
-    int, Label, list[Mark]
-]  # a number that stands for a value, from 1, and its marks; 0: no room for it
+Numbered = tuple[int, Label, list[Mark]]  # a number that stands for a value, and its marks; 0: no room for it
 
 
 def half_size(text: str, size: int, weight: str, unit: float) -> tuple[float, float]:
@@ -145,10 +140,8 @@ def _referred(
         number == np.array([former.get(label.key, -1) - _REFERRED if label.key else -1 for label in labels])[of]
     )
     inner = half - unit  # they may touch
-    cells, found = (
-        occupancy.cells_of(middle - inner, np.broadcast_to(2.0 * inner, middle.shape)),
-        np.full(len(labels), -1),
-    )
+    cells = occupancy.cells_of(middle - inner, np.broadcast_to(2.0 * inner, middle.shape))
+    found = np.full(len(labels), -1)
     for near in _NEAR_NUMBERS:  # what may be on it, more in need
         limits = np.array(near)[:, None] * unit * np.ones(len(of))
         at = np.flatnonzero(

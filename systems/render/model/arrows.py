@@ -189,14 +189,13 @@ def draw_arrows(
     for ends in ((tail, tip), (neck - barb, neck + barb)):
         sheet.occupancy.parts.add((kind, which[seen]), *ends, u)
     points = np.stack([tip, neck + barb, neck - barb], axis=1)
-    of = of if isinstance(of, list) else [(of[0], row) for row in of[1].tolist()]
-    tables, rows = np.array([table for table, _ in of])[seen], np.array([row for _, row in of])[seen]
+    owned = zip(*of, strict=True) if isinstance(of, list) else (np.full(len(of[1]), of[0]), of[1])
+    tables, rows = (np.array(column)[seen] for column in owned)
     for table in dict.fromkeys(tables.tolist()):
         own = tables == table
-        sheet.marks += [
-            Strokes(tail[own], neck[own], width * u, colour, (table, rows[own])),
-            Fills(points[own], colour, (table, rows[own])),
-        ]
+        whose = table, rows[own]
+        sheet.marks.append(Strokes(tail[own], neck[own], width * u, colour, whose))
+        sheet.marks.append(Fills(points[own], colour, whose))
 
 
 # --- diagrams of particles ----------------------------------------------------------------------------

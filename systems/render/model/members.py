@@ -8,9 +8,10 @@ from pinjoint.components import written
 from pinjoint.components.bent import Axes
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import DiagramShown
+from pinjoint.systems.render.labels.nearness import ranges
 from pinjoint.systems.render.labels.occupancy import STRONG
 from pinjoint.systems.render.labels.placing import ANCHORS
-from pinjoint.systems.render.marks import Discs, Fills, Owners, Points, Rows, Strokes, Values
+from pinjoint.systems.render.marks import Discs, Fills, Owners, Points, Rows, Strokes, Truths, Values
 from pinjoint.systems.render.model.arrows import MOST, draw_arrows, full_load, head_length
 from pinjoint.systems.render.model.sheet import Sheet
 from pinjoint.systems.render.model.values import FIRST, SMALLEST, half_sizes, off, said, write
@@ -70,28 +71,24 @@ def draw_distributed_forces(sheet: Sheet) -> None:
     loaded = np.flatnonzero(force[sheet.rods].any(axis=1))
     if not 0 < len(loaded) <= MOST:
         return
-    size, u, colour = np.hypot(*force[sheet.rods].T), sheet.unit, sheet.theme.load
-    least, most = _ROW
+    rows, u, colour = sheet.rods[loaded], sheet.unit, sheet.theme.load
+    size = np.hypot(*force[rows].T)
+    along, (least, most) = force[rows] * [1.0, -1.0] / size[:, None], _ROW
     height = (least + (most - least) * size / np.hypot(*force.T).max()) * u
     if sheet.view.all_diagrams and sheet.view.forces_known:
         height = np.full(len(size), least * u)  # diagrams have the room
+    which, tips, shifted = _tips(sheet, rows, along)
+    level, every = np.where(shifted, _APART * u, height)[which], along[which]
+    tails, of = tips - level[:, None] * every, ("rods", rows[which])
+    first = np.flatnonzero((which[:-1] == which[1:]) & ~shifted[which[1:]])
+    line, of_line = (tails[first], tails[first + 1]), ("rods", rows[which[first]])  # through the tails
+    sheet.marks.append(Strokes(*line, 1.25 * u, colour, of_line))
+    sheet.occupancy.line(*line, STRONG, of_line)
+    draw_arrows(sheet, of, tails, every, level, colour, of, 1.25)
+    sheet.explain("load per length", tails, tips)
     told = _told(sheet, loaded)
-    for index in loaded.tolist():
-        row = int(sheet.rods[index])
-        along = force[row] * [1.0, -1.0] / size[index]
-        tips, shifted = _tips(sheet, index, along)
-        if not len(tips) or not (np.abs(tips) < _FAR).all():
-            continue
-        level = np.full(len(tips), height[index] if not shifted else _APART * u)
-        tails = tips - level[:, None] * along
-        of = "rods", np.full(len(tips), row)
-        if not shifted:  # a line through the tails
-            sheet.marks.append(Strokes(tails[:-1], tails[1:], 1.25 * u, colour, (of[0], of[1][1:])))
-            sheet.occupancy.line(tails[:-1], tails[1:], STRONG, (of[0], of[1][1:]))
-        draw_arrows(sheet, of, tails, np.tile(along, (len(tails), 1)), level, colour, of, 1.25)
-        sheet.explain("load per length", tails, tips)
-        if index in told:
-            _label_row(sheet, row, tails, along, float(size[index]), shifted)
+    for k in [k for k in np.unique(which).tolist() if int(loaded[k]) in told]:
+        _label_row(sheet, int(rows[k]), tails[which == k], along[k], float(size[k]), bool(shifted[k]))
 
 
 def _told(sheet: Sheet, loaded: Rows) -> set[int]:
@@ -108,25 +105,26 @@ def _told(sheet: Sheet, loaded: Rows) -> set[int]:
     return {rods[len(rods) // 2] for _, rods in chains}
 
 
-def _tips(sheet: Sheet, index: int, along: Points) -> tuple[Points, bool]:
-    """Where the arrows of a distributed force end on a rod; or, where it acts along the rod, beside it."""
-    u, row = sheet.unit, int(sheet.rods[index])
-    start, end = sheet.centres[sheet.ends[row]]
-    way = end - start
-    length = float(np.hypot(*way))
-    if length < 2.0 * _APART * u:
-        return np.empty((0, 2)), False
-    shifted = bool(abs(along @ way) > 0.97 * length)
-    apart = float(gaps(np.array(length), u)) / length if sheet.view.free_bodies else 0.0
+def _tips(sheet: Sheet, rows: Rows, along: Points) -> tuple[Rows, Points, Truths]:
+    """Where the arrows of distributed forces end on rods, and which rod's each is; or, where one acts along its rod, beside
+    it, which is told by rod."""
+    u = sheet.unit
+    way = np.diff(sheet.centres[sheet.ends[rows]], axis=1)[:, 0]
+    length = np.hypot(*way.T)
+    shifted = np.abs((along * way).sum(axis=1)) > 0.97 * length
+    apart = gaps(length, u) / np.maximum(length, 1e-300) if sheet.view.free_bodies else np.zeros(len(rows))
     seen = 1.0 - 2.0 * apart
-    count = int(np.clip(round(seen * length / (_APART * u)), 2, _MOST_ARROWS))
-    shares = np.linspace(0.0, 1.0, count + 1) if not shifted else (np.arange(count) + 1.0) / count
-    shares = apart + shares * seen
-    points = sheet.view.camera.to_pixels(Axes.of(sheet.model, np.array([row])).points(shares)[0])
-    across = np.array([way[1], -way[0]]) / length
-    if shifted:
-        return points + _BESIDE * u * across * (1.0 if across[1] <= 0.0 else -1.0), True
-    return points - 1.5 * u * along, False
+    count = np.clip(np.nan_to_num(np.round(seen * length / (_APART * u))), 2, _MOST_ARROWS).astype(np.intp)
+    many = np.where(length < 2.0 * _APART * u, 0, np.where(shifted, count, count + 1))
+    which = np.repeat(np.arange(len(rows)), many)
+    number = ranges(np.where(shifted, 1, 0), many)
+    shares = apart[which] + number / count[which] * seen[which]
+    points = Axes.of(sheet.model, rows).some(which).points(shares[:, None])[:, 0]
+    across = way[:, ::-1] * [1.0, -1.0] / np.maximum(length, 1e-300)[:, None]
+    beside = _BESIDE * across * np.where(across[:, 1:] <= 0.0, 1.0, -1.0)
+    tips = sheet.view.camera.to_pixels(points) + u * np.where(shifted[:, None], beside, -1.5 * along)[which]
+    near = (np.bincount(which, ~(np.abs(tips) < _FAR).all(axis=1), len(rows)) == 0.0)[which]
+    return which[near], tips[near], shifted
 
 
 def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float, shifted: bool) -> None:
@@ -215,10 +213,8 @@ def draw_arcs(
     sheet.occupancy.line(first, last, STRONG, (key, every))
     for parts in ((first, last, every), (neck - barb, neck + barb, rows), (neck, tip, rows)):
         sheet.occupancy.parts.add((key, parts[2]), *parts[:2], u)
-    sheet.marks += [
-        Strokes(first, last, 1.75 * u, colour, (table, every)),
-        Fills(np.stack([tip, neck + barb, neck - barb], axis=1), colour, (table, rows)),
-    ]
+    sheet.marks.append(Strokes(first, last, 1.75 * u, colour, (table, every)))
+    sheet.marks.append(Fills(np.stack([tip, neck + barb, neck - barb], axis=1), colour, (table, rows)))
 
 
 def write_moment(
