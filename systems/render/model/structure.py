@@ -255,7 +255,8 @@ def _lines_of_shape(
     """Visible pieces of some rods in pixels, displaced from these positions by so much of a shape."""
     displacement = swing * shape.displacement
     moved, straight = position + displacement, np.zeros((len(rows), 5))
-    axes = Axes(*moved[sheet.ends[rows].T], straight[:, :2], straight)
+    start, end = moved[sheet.ends[rows].T]
+    axes = Axes(start, end, straight[:, :2], straight)
     if shape.rotation is not None:
         axes = Axes.moved(sheet.model, rows, moved, displacement, swing * shape.rotation)
     return _lines(sheet, axes, rows)
