@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from pinjoint.components.bent import FLAT, Axes, drawn_scale
+from pinjoint.components.bent import FLAT, Axes, Parts, drawn_scale
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.round_numbers import round_up
 from pinjoint.components.tags import Hovered, Selected
@@ -226,8 +227,12 @@ def _draw_circles(sheet: Sheet, rows: Rows, ink: Colour, hollow: Colour, rim: fl
 
 def draw_shape(sheet: Sheet) -> None:
     """The moving part of the structure, displaced by the shape from the state that the shape is about."""
-    shape, position = sheet.view.shape, sheet.model.particles.position
-    if shape is None or shape.displacement.shape != position.shape:
+    shape = sheet.view.shape
+    if shape is None:
+        return
+    parts = shape.parts or Parts.of(sheet.model)
+    position, joints = parts.position, sheet.model.particles.count
+    if shape.displacement.shape != position.shape or len(position) < joints:
         return
     if shape.about is not None:
         position = position + shape.about * drawn_scale(sheet.model)
@@ -236,29 +241,31 @@ def draw_shape(sheet: Sheet) -> None:
     moving = pixels > _SHAPE_FROM * sheet.unit
     if shape.rotation is not None:
         moving |= shape.rotation != 0.0
-    rows = np.flatnonzero(moving[sheet.ends].any(axis=1))
-    start, end = farthest = _lines_of_shape(sheet, shape, position, rows, 1.0)
+    parts = replace(
+        parts, between=parts.between[(drawn := moving[parts.between].any(axis=1))], rigid=parts.rigid[drawn]
+    )
+    start, end = farthest = _lines_of_shape(sheet, shape, position, parts, 1.0)
     if swing != 1.0:
-        start, end = _lines_of_shape(sheet, shape, position, rows, swing)
+        start, end = _lines_of_shape(sheet, shape, position, parts, swing)
     sheet.occupancy.line(*farthest, FAINT)  # so that labels stay where they are while it swings
     if len(start):
         sheet.marks.append(Strokes(start, end, _SHAPE_WIDTH * sheet.unit, colour))
     places = sheet.view.camera.to_pixels(position + swing * shape.displacement)
-    dots = places[moving & sheet.sees(places)]
+    dots = places[:joints][(moving & sheet.sees(places))[:joints]]
     if len(dots):
         sheet.marks.append(Discs(dots, np.full(len(dots), _SHAPE_RADIUS * sheet.unit), colour, colour))
 
 
 def _lines_of_shape(
-    sheet: Sheet, shape: Shape, position: Points, rows: Rows, swing: float
+    sheet: Sheet, shape: Shape, position: Points, parts: Parts, swing: float
 ) -> tuple[Points, Points]:
-    """Visible pieces of some rods in pixels, displaced from these positions by so much of a shape."""
-    displacement = swing * shape.displacement
+    """Visible pieces of rods in pixels, displaced from these positions by so much of a shape."""
+    rows, displacement = np.arange(len(parts.between)), swing * shape.displacement
     moved, straight = position + displacement, np.zeros((len(rows), 5))
-    start, end = moved[sheet.ends[rows].T]
+    start, end = moved[parts.between.T]
     axes = Axes(start, end, straight[:, :2], straight)
     if shape.rotation is not None:
-        axes = Axes.moved(sheet.model, rows, moved, displacement, swing * shape.rotation)
+        axes = Axes.moved(parts, moved, displacement, swing * shape.rotation)
     return _lines(sheet, axes, rows)
 
 
