@@ -34,6 +34,21 @@ _SAMPLES = 33  # between which a zero of a polynomial is looked for
 
 
 @dataclass(frozen=True)
+class Parts:
+    """Rods: original positions of their ends (n, 2) in m, which two each joins, (p, 2), and which of these are rigid."""
+
+    position: Array
+    between: Rows
+    rigid: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, model: Model) -> Parts:
+        """All rods of a model."""
+        rods = model.rods
+        return cls(model.particles.position, rods.between.astype(np.intp), rods.turning_shares > 0.0)
+
+
+@dataclass(frozen=True)
 class Axes:
     """The axes of some rods as drawn (m): chords, unit vectors to their left, and by how much they bend away there.
 
@@ -63,17 +78,16 @@ class Axes:
         return cls(drawn[:, 0], drawn[:, 1], state.left, scale * (state.cubic + state.sag), drift)
 
     @classmethod
-    def moved(cls, model: Model, rows: Rows, places: Array, displacement: Array, rotation: Array) -> Axes:
-        """The axes of some rods by small displacements (particles, 2) and rotations (particles,) that lead to places.
+    def moved(cls, parts: Parts, places: Array, displacement: Array, rotation: Array) -> Axes:
+        """The axes of rods by small displacements (particles, 2) and rotations (particles,) that lead to places.
 
         Their ends, at places (particles, 2), are all that is drawn of what was before.
         """
-        rods = model.rods
-        ends = rods.between[rows].astype(np.intp)
-        difference, length = rods.difference[rows], rods.original_length[rows]
+        ends, rigid = parts.between, parts.rigid
+        difference = parts.position[ends[:, 1]] - parts.position[ends[:, 0]]
+        length = np.hypot(*difference.T)
         left = np.stack([-difference[:, 1], difference[:, 0]], axis=1) / np.maximum(length, 1e-300)[:, None]
         chord = ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * left).sum(axis=1)
-        rigid = rods.turning_shares[rows] > 0.0
         slopes = np.where(rigid, length[:, None] * rotation[ends] - chord[:, None], 0.0)
         slopes = np.where(rigid, slopes, np.where(rigid[:, ::-1], -0.5 * slopes[:, ::-1], 0.0))
         return cls(places[ends[:, 0]], places[ends[:, 1]], left, _cubic(*slopes.T))

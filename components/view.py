@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.additions import outlines
-from pinjoint.components.bent import AXIAL, middles
+from pinjoint.components.bent import AXIAL, Parts, middles
 from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
@@ -176,7 +176,8 @@ class Shape:
 
     title: such as "Mode 1 of 5: 9.276 Hz". displacement: (m), as drawn, (n, 2). about: the displacement (m) of the
     equilibrium that it leads away from, (n, 2); None: it leads away from the original positions. rotation: (rad), on the
-    scale of the displacement, (n,); None: nothing turns. note: a sentence about what it leaves out, or "".
+    scale of the displacement, (n,); None: nothing turns. note: a sentence about what it leaves out, or "". parts: what is
+    drawn, where rods are divided for it; its places follow the particles in all arrays of the shape.
     """
 
     title: str
@@ -184,6 +185,7 @@ class Shape:
     about: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
     rotation: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
     note: str = field(default="", compare=False)
+    parts: Parts | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

@@ -82,7 +82,7 @@ def figure(
     """A picture of a model, with the diagrams of a quantity.
 
     row: how many figures stand in a row; 0: by its shape. unit: pixels per point of its texts. measured: with its
-    dimensions and all names. moved: so that displacements are well seen, by which factor the caption says.
+    dimensions and all names. moved: so that displacements are well seen, by which factor the caption says; else undeformed.
     """
     model.delete(list(model.grids))
     wide, high = shape(model)
@@ -101,6 +101,7 @@ def figure(
     view.largest_force = _SHORTER * largest_force(model, view)
     pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
     model.settings.diagram_scale = scale_to(_DIAGRAM, pulled)
+    model.settings.displacement_scale = 0.0
     if moved:
         bows = extremes(deflections(model, np.flatnonzero(model.rods.bending_stiffness > 0.0)))[0]
         most = max(float(np.hypot(*model.particles.displacement.T).max(initial=0.0)), largest(bows))

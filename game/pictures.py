@@ -31,6 +31,7 @@ Size = tuple[int, int]
 Background = Literal["theme", "white", "transparent"]
 
 _WHITE = (255, 255, 255, 255)
+_USUAL = 1280, 800  # pixels; in larger pictures type and lines grow
 
 
 def render(
@@ -40,8 +41,14 @@ def render(
     exaggerate(session)
     session.update_view()
     view = on_paper(session.view, Camera(viewport=Viewport(0, 0, *size)))
+    view.pixel_ratio = _pixel_ratio(size)
     view.fit(session.model)
     write([(session.model, view)], path, size, theme, background)
+
+
+def _pixel_ratio(size: Size) -> float:
+    """Pixels per point, so that a large picture on paper is read as well as a usual one."""
+    return max(min(side / usual for side, usual in zip(size, _USUAL, strict=True)), 1.0)
 
 
 def on_paper(view: View, camera: Camera | None = None) -> View:
@@ -118,7 +125,7 @@ def frame(
     status = replace(session.view.status, hint="")  # a picture takes no keys
     camera = Camera(viewport=Viewport(0, 0, *size))
     view = replace(session.view, camera=camera, toolbar=Toolbar(), sliders=SliderStack(), status=status)
-    view.heading, view.advises = "", False
+    view.heading, view.advises, view.pixel_ratio = "", False, _pixel_ratio(size)
     view.camera.fit(around, MARGIN, view.room, view.pixel_ratio)
     return as_colours([compose(session.model, view, load_theme(theme), placed)], size)
 

@@ -33,9 +33,9 @@ class Results:
     sums: Table
 
     @classmethod
-    def of(cls, model: Model, *, first_order: bool = False) -> Results:
-        """The results of a model; first_order: places and levers are those of the original shape, not of the present one."""
-        rods, particles = model.rods, model.particles
+    def of(cls, model: Model) -> Results:
+        """The results of a model; of first order, places and levers are those of the original shape."""
+        rods, particles, first_order = model.rods, model.particles, model.first_order
         place = particles.position if first_order else particles.position + particles.displacement
         force = _largest(rods.end_axial_force, rods.shear, particles.reaction, particles.applied_force)
         of_forces = force * float(np.ptp(place, axis=0).max(initial=0.0)) if len(place) else 0.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -14,20 +13,17 @@ from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.theory import FIRST_ORDER
+from pinjoint.documents.models import document, load
+from pinjoint.documents.statics import Statics
 from pinjoint.figures import diagram_titles, figure, printed, shape, signs
-from pinjoint.force_method.copies import base_structure, still
 from pinjoint.results import Results
 from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.render.backends.paper import LAYOUTS, Block, Layout, as_paper, in_rows
-from pinjoint.systems.statics.force_method import SetState
-from pinjoint.systems.statics.settle import settle
-from pinjoint.systems.statics.state import Start
 from pinjoint.tables import Column, Table
 
 _FLAT = 1.6  # times as wide as high: of such structures each figure has a row of its own
 _BESIDE = 20  # rods up to which their table stands beside figures
 _LARGER = 1.2  # type in figures, that of reports being 1
-_MOVED = ("displacement", "rotation", "deflection")  # what begins so is told of the deformed structure
 
 
 class NoSheet(Mistake, ValueError):
@@ -35,76 +31,46 @@ class NoSheet(Mistake, ValueError):
 
 
 def sheet(model: Model, theory: str = FIRST_ORDER) -> bytes:
-    """The sheet of a model, solved from its undeformed beginning, as a PDF file. Raises NoSheet, FieldError."""
-    with model.own_state():  # the mode of statics shows another solution, from which none begins
-        solved = Solved(model, theory)
-        return as_paper(solved.title, partial(contents, solved), f"Pinjoint · {solved.title}", LAYOUTS[:2])
+    """The sheet of a model, solved from its undeformed beginning, as a PDF file. Raises NoSheet."""
+    solved = Solved(model, theory)
+    return as_paper(solved.title, partial(contents, solved), f"Pinjoint · {solved.title}", LAYOUTS[:2])
 
 
 class Solved:
-    """A model, its static solution, and copies that show it: `straight` on the original shape, `moved` on the deformed."""
+    """A copy of a model that shows its static solution, whatever the model shows, with the tables of it."""
 
     def __init__(self, model: Model, theory: str) -> None:
-        self.model, self.first_order = model, theory == FIRST_ORDER
         self.title = tr(model.title) if model.title else tr("Structure")
         if not model.rods.count:
             raise NoSheet("The model has no rods, so there is no structure to solve.")
-        rods = model.rods
-        strain = rods.plastic_strain if model.clock.time == 0.0 else np.zeros(rods.count)
-        settlement = settle(model, theory=theory, start=Start.undeformed(model, strain))
-        final = settlement.final
-        if not final.balanced:
-            raise NoSheet("There is no sheet without an equilibrium. {reason}", reason=settlement.message)
-        _, note = settlement.beside(left_out_of_statics(model))
+        self.model = copy = load(document(model))
+        copy.settings.theory = theory
+        copy.delete(list(copy.grids))
+        strain = copy.rods.plastic_strain.copy() if copy.clock.time == 0.0 else np.zeros(copy.rods.count)
+        statics = Statics(copy, lambda: strain)
+        settlement = statics.settlement
+        if settlement is None or not statics.balanced:
+            reason = statics.message
+            raise NoSheet("There is no sheet without an equilibrium. {reason}", reason=reason)
+        _, note = settlement.beside(left_out_of_statics(copy))
         self.said = joined([settlement.message, note])
-        self.state = SetState(
-            final.displacement,
-            final.rotation,
-            final.axial_force,
-            final.diagrams["bending_moment"] * np.array([-1.0, 1.0]),
-            np.column_stack([final.reaction, final.reaction_moment]),
-        ).without_rounding(rods.rest_length)
-        self.results = self._results()
-
-    def copy(self, *, moved: bool = False) -> Model:
-        """A copy that shows the solution."""
-        return still(base_structure(self.model, []), self.model, self.state, moved=moved)
-
-    def _results(self) -> Results:
-        """The tables; in first-order theory those of forces are of the original shape."""
-        moved = Results.of(self.copy(moved=True), first_order=self.first_order)
-        if not self.first_order:
-            return moved
-        straight = Results.of(self.copy(), first_order=True)
-        return replace(
-            straight,
-            rods=_merged(straight.rods, moved.rods),
-            particles=_merged(straight.particles, moved.particles),
-        )
-
-
-def _merged(straight: Table, moved: Table) -> Table:
-    """A table with the columns of displacements from another one."""
-    columns = [
-        other if other.key.startswith(_MOVED) else own
-        for own, other in zip(straight.columns, moved.columns, strict=True)
-    ]
-    return Table(straight.corner, straight.names, columns)
+        copy.show(statics)
+        self.results = Results.of(copy)
 
 
 def contents(solved: Solved, layout: Layout) -> list[Flowable]:
     """What the sheet consists of, from the top to the bottom."""
     model, results = solved.model, solved.results
     wide, high = shape(model)
-    draw = partial(figure, layout, row=1 if wide > _FLAT * high else 2, unit=_LARGER)
+    draw = partial(figure, layout, model, row=1 if wide > _FLAT * high else 2, unit=_LARGER)
     theory = tr("Statics by first-order theory: equilibrium about the original shape.")
-    if not solved.first_order:
+    if not model.first_order:
         theory = tr("Statics in exact geometry: equilibrium of the deformed shape.")
-    figures = [draw(solved.copy(), tr("Dimensions (m), supports and loads"), measured=True)]
+    figures = [draw(tr("Dimensions (m), supports and loads"), measured=True)]
     for quantity, title in diagram_titles().items():
         if bends(model) or quantity == AXIAL:
-            figures.append(draw(solved.copy(), title, diagrams=quantity))
-    figures.append(draw(solved.copy(moved=True), tr("Deflected shape"), moved=True))
+            figures.append(draw(title, diagrams=quantity))
+    figures.append(draw(tr("Deflected shape"), moved=True))
     tables = {
         tr("Rods"): _members(layout, model),
         tr("Forces in rods"): printed(layout, results.rods),

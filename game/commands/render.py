@@ -56,6 +56,9 @@ def command(words: Sequence[str]) -> int:
     session.view.all_diagrams = options.diagrams or options.diagrams_of is not None
     session.view.quantity = options.diagrams_of or session.view.quantity
     session.view.utilisation = options.utilisation
+    if options.plain:
+        session.view.has_scale = False
+        session.model.delete(list(session.model.grids))
     draw = _animate if options.output.lower().endswith(".gif") else _draw
     with writing(options.output):
         status = draw(session, options, (width, height))
@@ -76,7 +79,10 @@ def _parser() -> Parser:
         help=tr("the file to write: .png, .svg or .pdf, or .gif to show the run"),
     )
     parser.add_argument(
-        "--size", default="1280x800", metavar="WIDTHxHEIGHT", help=tr("the size in pixels; default 1280x800")
+        "--size",
+        default="1280x800",
+        metavar="WIDTHxHEIGHT",
+        help=tr("the size in pixels; default 1280x800; type grows with it"),
     )
     parser.add_argument(
         "--until-rest", action="store_true", help=tr("run until at rest first (the default of a .gif)")
@@ -126,6 +132,9 @@ def _parser() -> Parser:
         choices=("theme", "white", "transparent"),
         default="theme",
         help=tr("the background, for pictures in reports; default theme"),
+    )
+    parser.add_argument(
+        "--plain", action="store_true", help=tr("leave out the grid, the scale and what is said of scales")
     )
     parser.add_argument("--limit", type=positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
     return parser

@@ -80,16 +80,13 @@ def loaded(model: Model, released: Sequence[Unknown], amounts: Sequence[float]) 
     return copy
 
 
-def still(copy: Model, whole: Model, state: SetState, *, moved: bool = False) -> Model:
-    """A copy of a structure, perhaps without some of its rods, with the forces of a state; no run may go on in it.
-
-    It is undeformed; moved: deformed as in the state.
-    """
+def still(copy: Model, whole: Model, state: SetState) -> Model:
+    """A copy of a structure, perhaps without some of its rods, undeformed, with the forces of a state; none may run."""
     particles, rods = copy.particles, copy.rods
     here = [whole.rods[name].row for name in rods.names]
-    copy.writable("particles.displacement")[...] = state.displacement if moved else 0.0
-    copy.writable("particles.rotation")[...] = state.rotation if moved else 0.0
-    if rods.bending_stiffness.any() and not moved:
+    copy.writable("particles.displacement")[...] = 0.0
+    copy.writable("particles.rotation")[...] = 0.0
+    if rods.bending_stiffness.any():
         copy.writable("rods.bending_stiffness")[...] *= _STIFF
     load = np.pad(External.of(copy).at(1.0), ((0, 0), (0, 1)))
     held = np.column_stack([particles.fixed, particles.fixed_rotation])

@@ -2,14 +2,17 @@
 
 Others can restyle them and check what they show: all lines, areas and texts of the rod AB stand in the group `rods.AB`,
 which has the class `rods`. Ids have no spaces, which are written %20 there; `data-path` is the path as it is.
-Coordinates are pixels; the same picture gives the same file.
+Coordinates are pixels; the same picture gives the same file. It carries its fonts, so that texts are as wide as they were
+measured; programs that read no such fonts take one of the system.
 """
 
 from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from base64 import b64encode
 from collections.abc import Sequence
+from importlib.resources import files
 from itertools import groupby
 from urllib.parse import quote
 
@@ -17,7 +20,7 @@ from pinjoint.components.wording import UNPRINTABLE
 from pinjoint.systems.render.backends.shapes import Circle, Line, Name, Polygon, Shape, grouped
 from pinjoint.systems.render.marks import Panel, Picture, Text
 from pinjoint.systems.render.theme import Colour
-from pinjoint.systems.render.typography import capital_height
+from pinjoint.systems.render.typography import WEIGHTS, capital_height
 
 FONTS = "Inter, sans-serif"
 _WEIGHTS = {"regular": "400", "semibold": "600"}
@@ -42,6 +45,7 @@ def as_svg(pictures: Sequence[tuple[Picture, Name]], size: tuple[int, int], titl
         },
     )
     ET.SubElement(root, "title").text = UNPRINTABLE.sub("�", title)
+    fonts = ET.SubElement(root, "style")
     number = 0
     for picture, path in pictures:
         drawn = root if len(pictures) == 1 else _frame(root, picture)
@@ -63,9 +67,20 @@ def as_svg(pictures: Sequence[tuple[Picture, Name]], size: tuple[int, int], titl
                 else:
                     for shape in run:
                         _add(into, shape)
+    weights = {text.get("font-weight", "") for text in root.iter("text")}
+    fonts.text = "".join(
+        _font(file, _WEIGHTS[name]) for name, file in WEIGHTS.items() if _WEIGHTS[name] in weights
+    )
     ET.indent(root)
     made: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
     return made + b"\n"
+
+
+def _font(file: str, weight: str) -> str:
+    """A rule that holds a font."""
+    code = b64encode((files("pinjoint.assets") / "fonts" / file).read_bytes()).decode()
+    source = f"url(data:font/otf;base64,{code})"
+    return f"@font-face{{font-family:Inter;font-weight:{weight};src:{source}}}"
 
 
 def _frame(root: ET.Element, picture: Picture) -> ET.Element:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from pinjoint.components.bent import FLAT, Axes
+from pinjoint.components.bent import FLAT, Axes, Parts
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.round_numbers import round_up
+from pinjoint.components.table import flags
 from pinjoint.components.tags import Hovered, Selected
 from pinjoint.components.view import Shape
 from pinjoint.systems.render.clip import clip_segments
@@ -210,8 +212,12 @@ def _draw_circles(sheet: Sheet, rows: Rows, ink: Colour, hollow: Colour, rim: fl
 
 def draw_shape(sheet: Sheet) -> None:
     """The moving part of the structure, displaced by the shape from the state that the shape is about."""
-    shape, position = sheet.view.shape, sheet.model.particles.position
-    if shape is None or shape.displacement.shape != position.shape:
+    shape = sheet.view.shape
+    if shape is None:
+        return
+    parts = shape.parts or Parts.of(sheet.model)
+    position, joints = parts.position, sheet.model.particles.count
+    if shape.displacement.shape != position.shape or len(position) < joints:
         return
     if shape.about is not None:
         position = position + shape.about * sheet.model.settings.displacement_scale
@@ -220,30 +226,32 @@ def draw_shape(sheet: Sheet) -> None:
     moving = pixels > _SHAPE_FROM * sheet.unit
     if shape.rotation is not None:
         moving |= shape.rotation != 0.0
-    rows = np.flatnonzero(moving[sheet.ends].any(axis=1))
-    start, end = farthest = _lines_of_shape(sheet, shape, position, rows, 1.0)
+    parts = replace(
+        parts, between=parts.between[(drawn := moving[parts.between].any(axis=1))], rigid=parts.rigid[drawn]
+    )
+    start, end = farthest = _lines_of_shape(sheet, shape, position, parts, 1.0)
     if swing != 1.0:
-        start, end = _lines_of_shape(sheet, shape, position, rows, swing)
+        start, end = _lines_of_shape(sheet, shape, position, parts, swing)
     sheet.occupancy.line(*farthest, FAINT)  # so that labels stay where they are while it swings
     if len(start):
         sheet.marks.append(Strokes(start, end, _SHAPE_WIDTH * sheet.unit, colour))
     places = sheet.view.camera.to_pixels(position + swing * shape.displacement)
-    dots = places[moving & sheet.sees(places)]
+    dots = places[:joints][(moving & sheet.sees(places))[:joints]]
     if len(dots):
         sheet.marks.append(Discs(dots, np.full(len(dots), _SHAPE_RADIUS * sheet.unit), colour, colour))
 
 
 def _lines_of_shape(
-    sheet: Sheet, shape: Shape, position: Points, rows: Rows, swing: float
+    sheet: Sheet, shape: Shape, position: Points, parts: Parts, swing: float
 ) -> tuple[Points, Points]:
-    """Visible pieces of some rods in pixels, displaced from these positions by so much of a shape."""
+    """Visible pieces of rods in pixels, displaced from these positions by so much of a shape."""
     moved = position + swing * shape.displacement
-    places, ends, to_pixels = sheet.view.camera.to_pixels(moved), sheet.ends[rows], sheet.view.camera.to_pixels
+    places, ends, to_pixels = sheet.view.camera.to_pixels(moved), parts.between, sheet.view.camera.to_pixels
     start, end = places[ends[:, 0]], places[ends[:, 1]]
     if shape.rotation is not None:
-        bent = Axes.moved(sheet.model, rows, moved, swing * shape.displacement, swing * shape.rotation)
-        if (lines := bent.pieces(rows, FLAT / sheet.view.camera.scale)) is not None:
-            straight = ~sheet.chosen(lines.rods, rows)
+        bent = Axes.moved(parts, moved, swing * shape.displacement, swing * shape.rotation)
+        if (lines := bent.pieces(np.arange(len(ends)), FLAT / sheet.view.camera.scale)) is not None:
+            straight = ~flags(lines.rods, len(ends))
             start = np.concatenate([start[straight], to_pixels(lines.start)])
             end = np.concatenate([end[straight], to_pixels(lines.end)])
     return clip_segments(start, end, *sheet.viewport.corners)[:2]

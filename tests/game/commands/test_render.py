@@ -49,6 +49,27 @@ def test_no_status_bar_stands_in_a_picture_for_a_report(tmp_path: Path) -> None:
     assert clear.find(f"{SVG}rect").get("width") == "1"  # a line of the grid: there is no background
 
 
+def test_type_grows_with_the_size_of_a_picture(tmp_path: Path) -> None:
+    found = []
+    for size in ("640x480", "1280x800", "2560x1600"):
+        path = rendered(tmp_path / "a.svg", "--size", size)
+        texts = ET.parse(path).getroot().iter(f"{SVG}text")
+        found.append({text.text: float(text.get("font-size", "nan")) for text in texts})
+    assert found[0]["−28.34 kN"] == found[1]["−28.34 kN"]
+    shared = found[1].keys() & found[2].keys()
+    assert {"AB", "−28.34 kN"} <= shared
+    assert {found[2][text] / found[1][text] for text in shared} == {2.0}
+
+
+def test_a_plain_picture_has_no_grid_and_says_nothing_of_scales(tmp_path: Path) -> None:
+    usual, plain = (ET.parse(rendered(tmp_path / "a.svg", *words)).getroot() for words in ((), ("--plain",)))
+    told = [{text.text for text in root.iter(f"{SVG}text")} for root in (usual, plain)]
+    (scale,) = told[0] - told[1]
+    assert "displacements ×" in (scale or "")
+    assert any(rect.get("width") == "1" for rect in usual.findall(f"{SVG}rect"))
+    assert not any(rect.get("width") == "1" for rect in plain.findall(f"{SVG}rect"))
+
+
 def test_walls_have_groups_too(tmp_path: Path) -> None:
     path = tmp_path / "a.svg"
     assert main(["render", "pile", "--output", str(path)]) == 0

@@ -2,7 +2,9 @@
 
 import re
 import xml.etree.ElementTree as ET
+from base64 import b64decode
 from functools import partial
+from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from pinjoint.systems.render.backends.pdf import as_pdf
 from pinjoint.systems.render.backends.shapes import Circle, Line, grouped
 from pinjoint.systems.render.backends.svg import as_svg
 from pinjoint.systems.render.marks import Discs, Mark, Panel, Picture, Stamps, Strokes, Text
+from pinjoint.systems.render.typography import WEIGHTS
 from tests.systems.render.pictures import picture_of, triangle
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -51,6 +54,17 @@ def test_every_element_is_one_group_with_its_path_as_id() -> None:
     assert sorted(texts_of(root)) == sorted(picture.texts)
 
 
+def test_a_picture_carries_the_fonts_of_its_texts() -> None:
+    root = svg_of(picture_of(triangle(), all_diagrams=True), triangle())
+    rules = (root.findtext(f"{SVG}style") or "").split("@font-face")[1:]
+    assert {text.get("font-weight") for text in root.iter(f"{SVG}text")} == {"400", "600"}
+    for rule, weight, file in zip(rules, ("400", "600"), WEIGHTS.values(), strict=True):
+        assert f"font-weight:{weight};" in rule
+        carried = b64decode(re.search("base64,([^)]*)", rule)[1])  # type: ignore[index]
+        assert carried == (files("pinjoint.assets") / "fonts" / file).read_bytes()
+    assert svg_of(Picture(Viewport(0, 0, *SIZE), WHITE), triangle()).findtext(f"{SVG}style") == ""
+
+
 def model_names(model: Model, table: str) -> list[str]:
     return list(model.tables[table].names)
 
@@ -58,7 +72,7 @@ def model_names(model: Model, table: str) -> list[str]:
 def test_nothing_is_rasterised_and_text_is_text() -> None:
     root = svg_of(picture_of(triangle(), all_diagrams=True), triangle())
     assert {element.tag.removeprefix(SVG) for element in root.iter()} <= {
-        *("svg", "title", "g", "rect", "path", "polygon", "circle", "text")
+        *("svg", "style", "title", "g", "rect", "path", "polygon", "circle", "text")
     }
     assert root.get("font-family") == "Inter, sans-serif"
     assert {text.get("font-size") for text in root.iter(f"{SVG}text")} <= {"11", "12", "13"}
