@@ -241,6 +241,7 @@ class View:
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     provisional: why what is shown is no equilibrium, which makes results pale; "": it is one.
     card: a task of a lesson, in place of a model. cuts: rods that are drawn cut. has_units: values of forces tell theirs.
+    steady: a hand moves something, so that labels stay beside what they belong to.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -286,6 +287,7 @@ class View:
     card: Card | None = None
     cuts: tuple[Cut, ...] = ()
     has_units: bool = True
+    steady: bool = False
 
     @property
     def looks(self) -> tuple[object, ...]:

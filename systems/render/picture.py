@@ -172,7 +172,9 @@ def _composed(sheet: Sheet) -> Picture:
     scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
     put_controls(paper, model, sheet.view, theme)
     preview = draw_preview(sheet)
-    labels, referred = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
+    labels, referred = place_labels(
+        sheet.labels, sheet.occupancy, sheet.unit, sheet.placed, steady=sheet.view.steady
+    )
     over = [
         *draw_references(sheet, referred),
         *draw_scale(sheet, scale),
