@@ -16,6 +16,7 @@ from pinjoint.components.tags import Hovered
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import DrawRod
+from pinjoint.editor.gestures.moving import Placing
 from pinjoint.editor.readouts import readouts
 from pinjoint.editor.sliders import slider_stack
 from pinjoint.editor.toolbar import toolbar_of
@@ -71,7 +72,7 @@ def show(context: Context, elapsed: float) -> None:
     if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
         view.pressed = None
     view.flashes = _flashes(context)
-    view.heading = tr(scene.heading)
+    view.heading, view.steady = tr(scene.heading), isinstance(context.gesture, Placing)
     view.provisional = _provisional(context)
     view.shape = context.document.shapes.shown
     view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
