@@ -66,14 +66,14 @@ class Axes:
     drift: Array | None = None
 
     @classmethod
-    def of(cls, model: Model, rows: Rows) -> Axes:
-        """The axes of some rods, as they are drawn.
+    def of(cls, model: Model, rows: Rows, scale: float | None = None) -> Axes:
+        """The axes of some rods, as they are drawn, or with displacements to another scale.
 
         Cubics by the slopes of their ends, and what a distributed force adds between: q ξ²(1 − ξ)² L₀⁴/24EI across. In small
         displacements both together are exact.
         """
         rods, state = model.rods, _state(model, rows)
-        particles, scale = model.particles, float(model.settings.displacement_scale)
+        particles, scale = model.particles, drawn_scale(model) if scale is None else scale
         ends = rods.between[rows].astype(np.intp)
         drawn = particles.position[ends] + particles.displacement[ends] * scale
         drift = _drift(state)
@@ -147,6 +147,13 @@ class Axes:
         row = np.concatenate(of)
         order = np.argsort(row, kind="stable")
         return Lines(np.concatenate(starts)[order], np.concatenate(ends)[order], row[order])
+
+
+def drawn_scale(model: Model) -> float:
+    """By how much displacements are enlarged where elements are drawn and picked: 0 in statics, if a person wants it."""
+    settings = model.settings
+    original = model.solution is not None and settings.original_diagrams
+    return 0.0 if original else float(settings.displacement_scale)
 
 
 def is_frame(model: Model) -> bool:
@@ -298,11 +305,12 @@ def largest_sag(model: Model) -> float:
 
 
 def middles(model: Model) -> Array:
-    """Some points between the ends of the rods that bend, as drawn (m), (n, 2)."""
+    """Some points between the ends of the rods that bend, deflected to the displacement scale (m), (n, 2)."""
     if not is_frame(model):
         return np.empty((0, 2))
     rows = np.flatnonzero(model.rods.bending_stiffness > 0.0)
-    return Axes.of(model, rows).points(np.array([0.25, 0.5, 0.75])).reshape(-1, 2)
+    axes = Axes.of(model, rows, float(model.settings.displacement_scale))
+    return axes.points(np.array([0.25, 0.5, 0.75])).reshape(-1, 2)
 
 
 class Lines(NamedTuple):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.additions import outlines
-from pinjoint.components.bent import AXIAL, Parts, middles
+from pinjoint.components.bent import AXIAL, Parts, drawn_scale, middles
 from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
@@ -423,12 +423,15 @@ class View:
 
 def drawn_positions(model: Model) -> NDArray[np.float64]:
     """Where particles are drawn (m), shape (n, 2): original position + displacement × scale."""
-    particles = model.particles
-    drawn: NDArray[np.float64] = particles.position + particles.displacement * model.settings.displacement_scale
+    drawn: NDArray[np.float64] = model.particles.position + model.particles.displacement * drawn_scale(model)
     return drawn
 
 
 def drawn_places(model: Model) -> NDArray[np.float64]:
-    """All that a picture of a model is to show (m), (n, 2): drawn positions, bent rods, and points of other elements."""
+    """All that a picture of a model is to show (m), (n, 2): positions as drawn and deflected, bent rods, and points of other
+    elements.
+    """
+    particles, scales = model.particles, {drawn_scale(model), float(model.settings.displacement_scale)}
+    places = (particles.position + particles.displacement * scale for scale in scales)
     others = (points.reshape(-1, 2) for _, points in outlines(model))
-    return np.concatenate([drawn_positions(model), middles(model), *others])
+    return np.concatenate([*places, middles(model), *others])

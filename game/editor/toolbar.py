@@ -150,8 +150,10 @@ def _of_canvas(context: Context) -> Groups:
             "select all",
         ],
         ["toggle run", "restart", "settle", "toggle statics", "next theory"],
-        ["toggle diagrams", "toggle free bodies", "toggle utilisation"],
-        ["toggle theory", "toggle energy", "toggle events", "next shape"],
+        [
+            *("toggle diagrams", "toggle undeformed", "toggle free bodies", "toggle utilisation"),
+            *("toggle theory", "toggle energy", "toggle events", "next shape"),
+        ],
         [*of_mods(draw=False)],
         ["fit", "new grid", "next grid", "toggle legend", "next theme", "next language"],
         [

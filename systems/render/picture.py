@@ -25,6 +25,7 @@ from pinjoint.systems.render.model.free_bodies import draw_free_bodies
 from pinjoint.systems.render.model.members import draw_distributed_forces, draw_hinges, draw_moments
 from pinjoint.systems.render.model.sheet import DIRECTIONS, MANY, Sheet, Stage, measure
 from pinjoint.systems.render.model.structure import (
+    draw_deflected,
     draw_ghost,
     draw_grid,
     draw_halos,
@@ -124,6 +125,7 @@ def _draw_structure(sheet: Sheet) -> None:
     """Rods, supports and particles, with diagrams, loads and velocities."""
     draw_diagrams(sheet, taken_by_heading(sheet))
     draw_ghost(sheet)
+    draw_deflected(sheet)
     draw_halos(sheet)
     sides = support_sides(sheet)
     draw_supports(sheet, sides)

@@ -272,6 +272,7 @@ SCENES: dict[str, Scene] = {
     "free-bodies": _free_bodies,
     "pointed": _pointed,
     "frame-moments": _moments,
+    "statics": lambda window: pressed(window, "q", source="portal"),
     "frame-shears": _shears,
     "frame-free-bodies": _members_apart,
     "properties": _properties,

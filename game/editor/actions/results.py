@@ -114,6 +114,19 @@ def _next_theory(context: Context, pixel: Vector) -> None:
     )
 
 
+@action(
+    "toggle undeformed",
+    "y",
+    "shape: undeformed or deformed",
+    (STATICS,),
+    pressed=attrgetter("model.settings.original_diagrams"),
+    while_drawing=False,
+)
+def _toggle_undeformed(context: Context, pixel: Vector) -> None:
+    """The structure with its diagrams in its undeformed shape, or deformed."""
+    context.settings.original_diagrams = not context.settings.original_diagrams
+
+
 action("toggle free bodies", "x", "show or hide free-body diagrams", pressed=attrgetter("view.free_bodies"))(
     toggle("free_bodies")
 )

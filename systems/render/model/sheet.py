@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from pinjoint.components.bent import FLAT, Lines, curved_lines, is_frame, largest_sag
+from pinjoint.components.bent import FLAT, Lines, curved_lines, drawn_scale, is_frame, largest_sag
 from pinjoint.components.camera import Viewport
 from pinjoint.components.form import Form
 from pinjoint.components.model import Model
@@ -170,7 +170,7 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     margin = 150.0 * unit  # so that the ends of a rod that leaves the viewport, and their labels, are not seen
     frame, reach, lines = is_frame(model), margin, None
     if frame:
-        sag = largest_sag(model) * model.settings.displacement_scale * camera.scale
+        sag = largest_sag(model) * drawn_scale(model) * camera.scale
         reach += min(2.0 * sag, float((high - low).max()))
     first, last = centres[ends.T]
     start, end, rods = clip_segments(first, last, low - reach, high + reach)

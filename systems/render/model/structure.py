@@ -1,4 +1,4 @@
-"""The model itself: grid, ghost of the undeformed structure, rods, particles, names, and a shape over all."""
+"""The model itself: grid, the shape that it had or gets, rods, particles, names, and a shape over all."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from pinjoint.components.bent import FLAT, Axes, Parts
+from pinjoint.components.bent import FLAT, Axes, Parts, drawn_scale
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.round_numbers import round_up
-from pinjoint.components.table import flags
 from pinjoint.components.tags import Hovered, Selected
 from pinjoint.components.view import Shape
 from pinjoint.systems.render.clip import clip_segments
@@ -85,6 +84,22 @@ def draw_ghost(sheet: Sheet) -> None:
         sheet.explain("ghost", start, end)
         start, end, of = dashed(start, end, _DASH * sheet.unit)
         sheet.marks.append(Strokes(start, end, sheet.unit, sheet.theme.ghost, ("rods", rows[seen][of])))
+
+
+def draw_deflected(sheet: Sheet) -> None:
+    """The deflected shape as a thin line, where the structure is drawn undeformed and the eye can tell them apart."""
+    model, scale = sheet.model, float(sheet.model.settings.displacement_scale)
+    if drawn_scale(model) == scale or sheet.view.shape is not None or len(sheet.ends) > MANY:
+        return
+    rows, shares = np.arange(len(sheet.ends)), np.array([0.0, 0.5, 1.0])
+    axes = Axes.of(model, rows, scale)
+    away = sheet.view.camera.scale * np.abs(axes.points(shares) - Axes.of(model, rows).points(shares))
+    start, end = _lines(sheet, axes, rows)
+    if (away > _SHAPE_WIDTH * sheet.unit).any():
+        sheet.occupancy.line(start, end, FAINT)
+        sheet.explain("deflected", start, end)
+        colour = faded(sheet.colour_of("sketch"), _SHAPE_OPACITY)
+        sheet.marks.append(Strokes(start, end, _SHAPE_WIDTH * sheet.unit, colour))
 
 
 def _sagging(sheet: Sheet) -> Rows:
@@ -220,7 +235,7 @@ def draw_shape(sheet: Sheet) -> None:
     if shape.displacement.shape != position.shape or len(position) < joints:
         return
     if shape.about is not None:
-        position = position + shape.about * sheet.model.settings.displacement_scale
+        position = position + shape.about * drawn_scale(sheet.model)
     colour, swing = faded(sheet.theme.sketch, _SHAPE_OPACITY), sheet.view.swing
     pixels = np.hypot(*shape.displacement.T) * sheet.view.camera.scale
     moving = pixels > _SHAPE_FROM * sheet.unit
@@ -245,15 +260,23 @@ def _lines_of_shape(
     sheet: Sheet, shape: Shape, position: Points, parts: Parts, swing: float
 ) -> tuple[Points, Points]:
     """Visible pieces of rods in pixels, displaced from these positions by so much of a shape."""
-    moved = position + swing * shape.displacement
-    places, ends, to_pixels = sheet.view.camera.to_pixels(moved), parts.between, sheet.view.camera.to_pixels
-    start, end = places[ends[:, 0]], places[ends[:, 1]]
+    rows, displacement = np.arange(len(parts.between)), swing * shape.displacement
+    moved, straight = position + displacement, np.zeros((len(rows), 5))
+    start, end = moved[parts.between.T]
+    axes = Axes(start, end, straight[:, :2], straight)
     if shape.rotation is not None:
-        bent = Axes.moved(parts, moved, swing * shape.displacement, swing * shape.rotation)
-        if (lines := bent.pieces(np.arange(len(ends)), FLAT / sheet.view.camera.scale)) is not None:
-            straight = ~flags(lines.rods, len(ends))
-            start = np.concatenate([start[straight], to_pixels(lines.start)])
-            end = np.concatenate([end[straight], to_pixels(lines.end)])
+        axes = Axes.moved(parts, moved, displacement, swing * shape.rotation)
+    return _lines(sheet, axes, rows)
+
+
+def _lines(sheet: Sheet, axes: Axes, rows: Rows) -> tuple[Points, Points]:
+    """Visible pieces, in pixels, of the axes of some rods."""
+    to_pixels = sheet.view.camera.to_pixels
+    start, end = to_pixels(axes.start), to_pixels(axes.end)
+    if (lines := axes.pieces(rows, FLAT / sheet.view.camera.scale)) is not None:
+        straight = ~sheet.chosen(lines.rods, rows)
+        start = np.concatenate([start[straight], to_pixels(lines.start)])
+        end = np.concatenate([end[straight], to_pixels(lines.end)])
     return clip_segments(start, end, *sheet.viewport.corners)[:2]
 
 

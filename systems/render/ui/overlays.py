@@ -250,6 +250,7 @@ MEANINGS = {
     "velocity": marked("velocity"),
     "hinge": marked("hinge"),
     "ghost": marked("undeformed"),
+    "deflected": marked("deflected"),
 }
 _SCALES = ("utilisation", "axial utilisation")
 UNITS = {
@@ -333,7 +334,8 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
     if name in _SCALES:
         return scale_bar(theme, x, y, width, u)
     in_ink = ("slack", "hinge", "moment", "shear", "velocity", "inertia")
-    colour = getattr(theme, "yielding" if name == "first" else "ink" if name in in_ink else name)
+    drawn_in = {"first": "yielding", "deflected": "sketch"} | dict.fromkeys(in_ink, "ink")
+    colour = getattr(theme, drawn_in.get(name, name))
     ends = np.array([[x, y]]), np.array([[x + width, y]])
     if name == "hinge":
         return [Stamps("ring", ends[0] + [width / 2, 0.0], 4.0 * u, u, theme.ink, theme.hollow)]
@@ -343,6 +345,8 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
         return [Strokes(*ends, 9.0 * u, faded(colour, HALO_OPACITY))]
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]
+    if name == "deflected":
+        return [Strokes(*ends, 1.25 * u, colour)]
     if name in ("slack", "ghost"):
         return [Strokes(*dashed(*ends, width / 5)[:2], 1.25 * u, colour)]
     return [Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour)]
