@@ -349,6 +349,6 @@ def plugin(app: App) -> None:
         ("longer", "[", 2.0, marked("show a longer time in plots")),
         ("shorter", "]", 0.5, marked("show a shorter time in plots")),
     ):
-        app.action(f"probes.{name}", key=key, scenes=live, title=title, while_drawing=True)(
+        app.action(f"probes.{name}", key=key, scenes=live[:2], title=title, while_drawing=True)(
             lambda session, pixel, factor=factor: zoom(factor, session)  # type: ignore[misc]
         )

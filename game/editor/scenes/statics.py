@@ -26,8 +26,7 @@ class Statics(Scene):
         if not (view.all_diagrams or context.model.any_tagged(DiagramShown)):
             view.all_diagrams, view.quantity = True, MOMENT
         view.sliders = slider_stack(context)
-        if view.fitted:  # above one slider more
-            view.fit(context.model)
+        view.follow(context.model, clear=True)  # of one slider more
 
     def hint(self, context: Context) -> str:
         if context.model.particles.count == 0:

@@ -88,6 +88,8 @@ def in_scene(scene: str) -> Session:
     }
     if scene in keys:
         session.press(keys[scene])
+    if scene == STATICS:  # which has one slider more, that nothing is to lie under
+        session.point(*session.particles["B"].position)
     assert scene == MENU or session.scene == scene
     assert (scene == MENU) == (session.view.menu is not None)
     return session
@@ -190,6 +192,7 @@ PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
     ("paste", SIMULATION): _copied,
     ("fit", FORCE_METHOD): lambda session: session.press("drag middle", (30.0, 30.0)),
     ("fit", PAUSE): lambda session: session.press("drag middle", (30.0, 30.0)),
+    ("fit", STATICS): lambda session: session.press("drag middle", (30.0, 30.0)),
     ("fit", SIMULATION): lambda session: session.press("drag middle", (30.0, 30.0)),
     ("natural pace", PAUSE): lambda session: session.press("+"),
     ("natural pace", SIMULATION): lambda session: session.press("+"),
