@@ -30,7 +30,10 @@ FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn 
 MOST_PIECES = 32  # of a drawn rod
 _LARGEST = 1e6  # pieces that a rod would have to be cut into; such are left out
 _STEEP, _STEEPEST = 0.05, 2.5  # rad, slopes from which on tangents are drawn truly, and up to which
-_SAMPLES = 33  # between which a zero of a polynomial is looked for
+_SAMPLES, _ROUNDING = (
+    33,
+    2e-16,
+)  # between which a zero of a polynomial is looked for, and the shares that are one to it
 
 
 @dataclass(frozen=True)
@@ -264,14 +267,23 @@ def zeros(polynomials: Array) -> tuple[Rows, Array]:
     signs = np.sign(values(polynomials, samples))
     which, place = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0.0)
     low, high = samples[place], samples[place + 1]
-    before = signs[which, place]
-    for _ in range(50):  # halves the interval down to rounding
-        middle = 0.5 * (low + high)
-        same = values(polynomials[which], middle[:, None])[:, 0] * before > 0.0
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    before, slopes, step = signs[which, place], derivative(polynomials), 0.5 * (high - low)
+    share = low + step
+    for _ in range(
+        60
+    ):  # Newton's method, or half the interval where that is less: some five times, down to rounding
+        value = values(polynomials[which], share[:, None])[:, 0]
+        low, high = np.where(value * before > 0.0, share, low), np.where(value * before > 0.0, high, share)
+        slope = values(slopes[which], share[:, None])[:, 0]
+        newton = -np.divide(value, slope, out=np.full(len(value), np.inf), where=slope != 0.0)
+        safe = (share + newton >= low) & (share + newton <= high) & (np.abs(newton) < 0.5 * np.abs(step))
+        step = np.where(safe | (np.abs(newton) < _ROUNDING), newton, 0.5 * (low + high) - share)
+        if not (np.abs(step) >= _ROUNDING).any():
+            break
+        share = share + step
     touching, at = np.nonzero(signs[:, 1:-1] == 0.0)  # a sample that is a zero itself
     touching, at = (part[signs[touching, at] * signs[touching, at + 2] < 0.0] for part in (touching, at))
-    which, shares = np.concatenate([which, touching]), np.concatenate([0.5 * (low + high), samples[at + 1]])
+    which, shares = np.concatenate([which, touching]), np.concatenate([share, samples[at + 1]])
     order = np.lexsort((shares, which))
     return which[order], shares[order]
 

@@ -63,7 +63,8 @@ def show(context: Context, elapsed: float) -> None:
     if context.notice:
         lasting = [context.notice]
     elif solved:
-        lasting = [statics.message, statics.second_order if context.gesture is None else ""]
+        rested = None if context.window is None else elapsed
+        lasting = [statics.message, statics.second_order(rested) if context.gesture is None else ""]
     else:
         remarks = [remark.message for remark in context.document.assessment.remarks]
         lasting = [*remarks, "" if follows(context) else _gone(context)]

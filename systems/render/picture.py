@@ -43,6 +43,7 @@ from pinjoint.systems.render.ui.form import compose_form
 from pinjoint.systems.render.ui.layout import Paper
 from pinjoint.systems.render.ui.lesson_card import compose_lesson
 from pinjoint.systems.render.ui.overlays import (
+    LIST,
     draw_notice,
     draw_overlays,
     draw_references,
@@ -172,11 +173,12 @@ def _composed(sheet: Sheet) -> Picture:
     scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
     put_controls(paper, model, sheet.view, theme)
     preview = draw_preview(sheet)
+    listed = sheet.placed.get(LIST, -1)
     labels, referred = place_labels(
         sheet.labels, sheet.occupancy, sheet.unit, sheet.placed, steady=sheet.view.steady
     )
     over = [
-        *draw_references(sheet, referred),
+        *draw_references(sheet, referred, listed),
         *draw_scale(sheet, scale),
         *draw_flashes(sheet),
         *preview,

@@ -132,6 +132,19 @@ def test_what_a_drag_shows_is_the_solution_of_each_frame() -> None:
     assert not session.frame(0.0).session.view.steady
 
 
+def test_in_a_window_theories_are_compared_once_the_hand_rests() -> None:
+    session = shown("portal")
+    statics, frames = session.document.statics, 1.0 / 60.0
+    said = statics.second_order()
+    assert said.startswith("second order")
+    session.particles["B"].force = (35.0, -20.0)
+    assert [statics.second_order(frames) for _ in range(10)] == [""] * 10
+    other = [statics.second_order(frames) for _ in range(10)][-1]
+    assert other.startswith("second order")
+    assert other != said
+    assert statics.second_order() == other
+
+
 def test_a_run_is_not_changed_by_a_look_at_statics() -> None:
     one, other = Session.open("portal"), Session.open("portal")
     for session in (one, other):
