@@ -86,7 +86,7 @@ FAR = (1.0 + math.sqrt(33.0)) / 16.0  # where 1 − 9ξ² + 8ξ³ = 0
 def test_the_largest_displacement_counts_points_inside_members(
     supports: tuple[str, str], factor: float, at: float | None
 ) -> None:
-    """Under q: 5qL⁴/384EI in the middle, (ξ − 3ξ³ + 2ξ⁴) qL⁴/48EI at ξ = FAR from a hinge with a clamp beyond, qL⁴/8EI at a free end."""
+    """Under q: 5qL⁴/384EI in the middle; (ξ − 3ξ³ + 2ξ⁴) qL⁴/48EI at ξ = FAR from a hinge; qL⁴/8EI at a free end."""
     held, clamped = supports
     ends = {"A": 0.0, "B": 4.0}
     facts = {name: {"fixed": [name in held] * 2, "fixed_rotation": name in clamped} for name in ends}
@@ -98,7 +98,7 @@ def test_the_largest_displacement_counts_points_inside_members(
     for chosen in ([session.rods["AB"]], [*session.rods, *session.particles]):
         said = {one.title: one.text for one in results(session.model, chosen)}["largest displacement"]
         size, _, where = said.partition(" cm ")
-        assert float(size) == pytest.approx(100.0 * factor * 8.0 * 4.0**4 / EI, rel=3e-4)
+        assert float(size) == pytest.approx(100.0 * factor * 8.0 * 4.0**4 / EI, rel=5e-4)
         assert where == ("(B)" if at is None else "(AB)")
     [size], [share] = farthest(session.model, np.array([0]))
     assert size == pytest.approx(factor * 8.0 * 4.0**4 / EI, rel=1e-9)
