@@ -27,6 +27,7 @@ SCALE, LOAD = (
     -1,
     -2,
 )  # the keys of the controls of the displacement scale and, in statics, of the last load step
+HIGH = 400.0  # points of a canvas that has room for that of the load
 LOADS = Slider((), 0.0, 2.0)  # the range of that, unless the model needs more
 SCALES = Slider((), 1.0, 1000.0, logarithmic=True)  # of displacements, unless the model needs more
 ABOVE = 28.0  # points, of the status bar
@@ -53,7 +54,8 @@ def sliders_of(context: Context) -> SliderStack:
     """The sliders of the open document: displacement scale at the bottom, load factor of statics, those of the model."""
     model = context.model
     scale = [scale_control(model.settings)] if model.rods.count else []
-    if scale and model.solution is not None:
+    high = context.view.canvas.height >= HIGH * context.view.pixel_ratio
+    if scale and high and model.solution is not None:
         factor = model.settings.load_steps[-1]
         share = loads(model.settings).share_of(factor)
         value = decimals(f"× {factor:.4g}".replace("-", "−"))

@@ -263,6 +263,7 @@ def seen(session: Session) -> Any:
     shown: list[Any] = [session.scene, contents(session.model), session.selected, repr(session.view)]
     shown += [
         session.model.tagged(DiagramShown),
+        session.settings.original_diagrams,
         session.document.live.clock.factor,
         session.view.tool,
         repr(session.gesture),
