@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -204,7 +205,20 @@ class _State(NamedTuple):
     sag: Array
 
 
+_STATES: WeakKeyDictionary[Model, tuple[int, _State]] = (
+    WeakKeyDictionary()
+)  # with the revision; a picture asks nine times
+
+
 def _state(model: Model, rows: Rows) -> _State:
+    known = _STATES.get(model)
+    if known is None or known[0] != model.revision:
+        found = _states(model)
+        known = _STATES[model] = model.revision, found
+    return _State(*(column[rows] for column in known[1]))
+
+
+def _states(model: Model) -> _State:
     rods, particles = model.rods, model.particles
     first, second = rods.between.astype(np.intp).T
     present = rods.difference
@@ -215,16 +229,13 @@ def _state(model: Model, rows: Rows) -> _State:
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
     across = along_and_across(model.share * rods.distributed_force, along)[1]
     rigid = rigid_slopes(rods, particles.rotation[rods.between], chord_rotation(model))
-    start, end = (length[:, None] * all_slopes(rods, rigid, across))[rows].T
+    start, end = (length[:, None] * all_slopes(rods, rigid, across)).T
     bent = rods.bending_stiffness > 0.0
-    sag = np.divide(
-        across * rods.rest_length**4, 24.0 * rods.bending_stiffness, out=np.zeros(len(bent)), where=bent
-    )[rows]
-    zero = np.zeros(len(sag))
+    zero = np.zeros(len(bent))
+    sag = np.divide(across * rods.rest_length**4, 24.0 * rods.bending_stiffness, out=zero.copy(), where=bent)
     cubic = _cubic(start, end)
-    cubic[~bent[rows]] = 0.0
-    sags = np.stack([zero, zero, sag, -2.0 * sag, sag], axis=1)
-    return _State(length[rows], left[rows], across[rows], cubic, sags)
+    cubic[~bent] = 0.0
+    return _State(length, left, across, cubic, np.stack([zero, zero, sag, -2.0 * sag, sag], axis=1))
 
 
 def inner_forces(model: Model, rows: Rows, quantity: str) -> Array:
