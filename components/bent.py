@@ -178,6 +178,25 @@ def deflections(model: Model, rows: Rows) -> Array:
     return state.cubic + state.sag
 
 
+def displacements(model: Model, rows: Rows) -> Array:
+    """How far points of the axes of some rods have moved (m), as polynomials of x and y, (n, 2, 5)."""
+    state, (start, end) = _state(model, rows), model.particles.displacement[model.rods.between[rows].T]
+    found: Array = state.left[..., None] * (state.cubic + state.sag)[:, None]
+    found[..., 0] += start
+    found[..., 1] += end - start
+    return found
+
+
+def farthest(model: Model, rows: Rows) -> tuple[Array, Array]:
+    """The largest displacement (m) along each of some rods, and the share where it is, (n,) each."""
+    moved = displacements(model, rows)
+    squares = np.zeros((len(moved), 9))
+    for power in range(5):
+        squares[:, power : power + 5] += (moved[..., power, None] * moved).sum(axis=1)
+    found, shares = extremes(squares)
+    return np.sqrt(found[:, 1]), shares[:, 1]
+
+
 def _drift(state: _State) -> Array | None:
     """How far points move along the chords, so that ends with slopes φ lie at angles φ to them, not arctan φ."""
     length = state.length

@@ -10,6 +10,7 @@ from itertools import product
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.bent import farthest
 from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
@@ -476,8 +477,12 @@ def _displacements(sheet: Sheet) -> list[str]:
     model, scale = sheet.model, sheet.model.settings.displacement_scale
     if scale != 1.0:
         return [] if sheet.view.slider_places else [tr("displacements ×{scale:g}", scale=scale)]
-    largest = float(np.abs(model.particles.displacement).max(initial=0.0)) if model.rods.count else 0.0
-    if not sheet.view.advises or not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
+    inside = farthest(model, np.flatnonzero(model.rods.bending_stiffness > 0.0))[0]
+    largest = float(np.append(inside, np.abs(model.particles.displacement)).max(initial=0.0))
+    if (
+        not (sheet.view.advises and model.rods.count)
+        or not _NOISE < largest * sheet.view.camera.scale < sheet.unit
+    ):
         return []
     return [
         tr(
