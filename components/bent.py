@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import NamedTuple
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -224,17 +223,12 @@ class _State(NamedTuple):
     sag: Array
 
 
-_STATES: WeakKeyDictionary[Model, tuple[int, _State]] = (
-    WeakKeyDictionary()
-)  # with the revision; a picture asks nine times
-
-
 def _state(model: Model, rows: Rows) -> _State:
-    known = _STATES.get(model)
-    if known is None or known[0] != model.revision:
+    revision, found = model.bent
+    if revision != model.revision:  # a picture asks nine times
         found = _states(model)
-        known = _STATES[model] = model.revision, found
-    return _State(*(column[rows] for column in known[1]))
+        model.bent = model.revision, found
+    return _State(*(column[rows] for column in found))
 
 
 def _states(model: Model) -> _State:
