@@ -15,7 +15,7 @@ from pinjoint.documents.models import ModelError, load
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.view_model import offer_tools
 from pinjoint.lessons import progress
-from pinjoint.lessons.judging import Answer, Document, Verdict, filled, judge, named, said_of
+from pinjoint.lessons.judging import Answer, Document, Verdict, begin_in_its_mode, filled, judge, named, said_of
 from pinjoint.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Lesson, Line, Task
 from pinjoint.scripts.lines import play_line
 from pinjoint.scripts.script import ScriptError
@@ -127,6 +127,7 @@ class Course:
         session.documents.open(model, ModelFile(None, name), keep=own)
         self._opened = name
         session.document.practice = True
+        begin_in_its_mode(session)
         session.notice = ""
 
     def perform(self, lines: Sequence[Line]) -> None:

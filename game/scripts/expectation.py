@@ -152,10 +152,19 @@ def _buckling(session: Any) -> float:
     return float(found.factors[0]) if len(found.factors) and not found.coarse else math.nan
 
 
+def _in_equilibrium(session: Any) -> bool:
+    """Whether what is shown is: the solution of statics, or the state."""
+    document = session.document
+    shown = (
+        document.statics.balanced if session.model.solution is not None else document.assessment.in_equilibrium
+    )
+    return bool(shown)
+
+
 _STATICS: dict[str, Callable[[Any], Any]] = {
     "degree": lambda session: session.document.assessment.indeterminacy.static,
     "mechanisms": lambda session: session.document.assessment.indeterminacy.mechanisms,
-    "equilibrium": lambda session: session.document.assessment.in_equilibrium,
+    "equilibrium": _in_equilibrium,
     "frequency": _frequency,
     "buckling": _buckling,
 }
