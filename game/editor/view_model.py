@@ -18,13 +18,14 @@ from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import DrawRod
 from pinjoint.editor.gestures.moving import Placing
 from pinjoint.editor.readouts import readouts
+from pinjoint.editor.scenes.statics import distance_at, pinned
 from pinjoint.editor.sliders import slider_stack
 from pinjoint.editor.toolbar import toolbar_of
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
 from pinjoint.systems.edit.rods import is_rigid
-from pinjoint.systems.forms.results import told
+from pinjoint.systems.forms.results import along, told
 from pinjoint.systems.input.actions import ACTIONS, LIVE
 from pinjoint.systems.render.ui.overlays import BAR
 
@@ -179,12 +180,22 @@ def follows(context: Context) -> bool:
 
 
 def _point_out(context: Context) -> None:
-    """Say what the element under the pointer does now, in the view that shows it."""
+    """Say what the element under the pointer does now, in the view that shows it, and what the pinned place does."""
     model, view = context.focus
     found = model.tagged(Hovered) if isinstance(model, Model) else []
+    view.pointer, place = context.view.pointer, None
     rows = told(model, found[0], forces_known=view.forces_known) if found else []
     pointed = Readout(model.describe(found[0]), tuple(rows)) if rows else None
-    view.pointer, view.pointed, context.view.pointed = context.view.pointer, pointed, pointed
+    if (
+        found
+        and view.pointer is not None
+        and (place := distance_at(model, view, found[0], view.pointer)) is not None
+    ):
+        pointed = along(model, found[0], place)
+    view.pointed = context.view.pointed = pointed
+    if (pin := context.view.pin) is not None:
+        shown = pinned(context) is not None
+        context.view.pin = replace(pin, told=along(context.model, pin.rod, pin.distance) if shown else None)
 
 
 def _awaited(context: Context) -> Waiting | None:
