@@ -32,6 +32,7 @@ COVERED = 0.75  # of this margin, what arrows and the legend may take
 COLUMN = 310.0  # points: the width of panels, boxes to type into, or a lesson, beside a model
 LEAST_MODEL = 230.0  # points that the model keeps beside boxes, or they take all
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
+TABLE_SHARE = 0.36  # of a window's height, that a table of results takes below a model
 LEAST_FOR_LESSON = 860.0  # points of a window's width from which on a lesson is a column, else a strip below
 STRIP, STRIP_SHARE = 230.0, 0.4  # points, and share of the height at most, of this strip
 
@@ -113,6 +114,26 @@ class Page:
     lines: tuple[str, ...] = ()
     table: Sequence[tuple[str, ...]] = ()
     first: int = 0
+
+
+@dataclass(frozen=True)
+class Listing:
+    """Those rows of a table of results that are in sight, beside or below a model.
+
+    titles: of all tables; title: of the one that is shown. heads: (title, unit) of its columns. by: the column by which its
+    rows are ordered, falls: the largest first. rows: their texts, each with its number in the table, and whether it is
+    selected. longest: the longest name. first: of how many rows, `count`, the first is that is in sight.
+    """
+
+    titles: tuple[str, ...]
+    title: str
+    heads: tuple[tuple[str, str], ...]
+    by: int
+    falls: bool
+    rows: tuple[tuple[int, bool, tuple[str, ...]], ...]
+    longest: str
+    first: int
+    count: int
 
 
 @dataclass(frozen=True)
@@ -250,7 +271,7 @@ class View:
     wanted: which of our own a person switched on among them: theory beside the run, its energy, its events.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
-    panel appeared.
+    panel appeared. table: the points across that a table of results wants beside the model; 0: there is none.
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     provisional: why what is shown is no equilibrium, which makes results pale; "": it is one.
     card: a task of a lesson, in place of a model. cuts: rods that are drawn cut. has_units: values of forces tell theirs.
@@ -296,6 +317,7 @@ class View:
     pin: Pin | None = None
     fitted: bool = False
     shares: bool = False
+    table: float = 0.0
     aside: Viewport | None = None
     provisional: str = ""
     card: Card | None = None
@@ -355,10 +377,10 @@ class View:
         right, top = places[0].right, places[-1].top
         return bool(x.min() - ARROW * self.pixel_ratio < right and y.max() + reach > top)
 
-    def share(self, model: Model, *, shares: bool) -> None:
-        """Leave room for panels, or not, and fit the model into what is left, unless somebody looks closer."""
-        if shares != self.shares:
-            self.shares = shares
+    def share(self, model: Model, *, shares: bool, table: float = 0.0) -> None:
+        """Leave room for panels and a table, or not, and fit the model into what is left, unless somebody looks closer."""
+        if (shares, table) != (self.shares, self.table):
+            self.shares, self.table = shares, table
             if self.fitted:
                 self.fit(model)
 
@@ -376,15 +398,34 @@ class View:
         return apart
 
     @property
+    def beside_strip(self) -> Viewport:
+        """All of the viewport but the toolbar."""
+        window, taken = self.camera.viewport, self.strip.width
+        return replace(window, left=window.left + taken, width=window.width - taken)
+
+    @property
+    def table_place(self) -> Viewport:
+        """Where a table of results stands: at the right where the model keeps enough, else below; of no size without one."""
+        whole, wide = self.beside_strip, round(self.table * self.pixel_ratio)
+        if wide == 0 or whole.width >= wide + LEAST_BESIDE * self.pixel_ratio:
+            return replace(whole, left=whole.left + whole.width - wide, width=wide)
+        high = round(TABLE_SHARE * whole.height)
+        return replace(whole, top=whole.top + whole.height - high, height=high)
+
+    @property
     def canvas(self) -> Viewport:
         """The part of the viewport that is left for the model."""
-        window, taken = self.camera.viewport, self.strip.width
-        left, right = window.left + taken, window.left + window.width
+        whole, table = self.beside_strip, self.table_place
+        left, right, bottom = whole.left, whole.left + whole.width, whole.top + whole.height
+        if table.top > whole.top:
+            bottom = table.top
+        else:
+            right = table.left
         if self.aside is not None and self.aside.left > left:
             right = self.aside.left
         elif self.aside is not None:
             left = self.aside.left + self.aside.width
-        return Viewport(left, window.top, right - left, window.height)
+        return Viewport(left, whole.top, right - left, bottom - whole.top)
 
     def beside(self, *, at_left: bool) -> Viewport | None:
         """Where boxes to type into stand beside the model; None where they would leave too little of it."""
@@ -395,8 +436,9 @@ class View:
         return replace(c, left=c.left if at_left else c.left + c.width - width, width=width)
 
     def covers(self, pixel: Vector) -> bool:
-        """True if the toolbar, a slider or boxes to type into are at a pixel of the window, not the model."""
-        taken = self.strip.contains(pixel) or self.slider_at(pixel) is not None
+        """True if the toolbar, a table, a slider or boxes to type into are at a pixel of the window, not the model."""
+        taken = any(place.contains(pixel) for place in (self.strip, self.table_place))
+        taken = taken or self.slider_at(pixel) is not None
         return taken or (self.aside is not None and self.aside.contains(pixel))
 
     @property

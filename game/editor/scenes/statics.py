@@ -45,7 +45,9 @@ class Statics(Scene):
             return tr("type x in cm     Esc or click again: take it away     Return properties     F1 help")
         if context.model.particles.count == 0:
             return tr("click a tool, then the canvas     right click menu     F1 help")
-        return tr("click select     I diagrams N, M, V     Z theory     Space run     Q pause     F1 help")
+        return tr(
+            "click select     I diagrams N, M, V     N table     Z theory     Space run     Q pause     F1 help"
+        )
 
 
 # --- numbers along members ----------------------------------------------------------------------------

@@ -16,7 +16,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import Hovered
 from pinjoint.components.toolbar import Toolbar
-from pinjoint.components.view import View, drawn_positions
+from pinjoint.components.view import Listing, View, drawn_positions
 from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels.occupancy import Occupancy
 from pinjoint.systems.render.labels.placing import Label, Placed
@@ -24,7 +24,8 @@ from pinjoint.systems.render.marks import Mark, Points, Rows, Truths, Values
 from pinjoint.systems.render.theme import Colour, Theme, pale
 from pinjoint.systems.render.typography import font_size
 
-Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
+Shown = Model | Form | Toolbar | Listing
+Stage = tuple[Shown, View]  # what is shown, and how
 
 FEW = 30  # elements, up to which each shows its name
 MANY = 2000  # rods, above which details of single elements are left out
