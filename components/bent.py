@@ -246,6 +246,14 @@ class _State(NamedTuple):
 
 
 def _state(model: Model, rows: Rows) -> _State:
+    revision, found = model.bent
+    if revision != model.revision:  # a picture asks nine times
+        found = _states(model)
+        model.bent = model.revision, found
+    return _State(*(column[rows] for column in found))
+
+
+def _states(model: Model) -> _State:
     rods, particles = model.rods, model.particles
     first, second = rods.between.astype(np.intp).T
     present = rods.difference
@@ -256,16 +264,13 @@ def _state(model: Model, rows: Rows) -> _State:
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
     across = along_and_across(model.share * rods.distributed_force, along)[1]
     rigid = rigid_slopes(rods, particles.rotation[rods.between], chord_rotation(model))
-    start, end = (length[:, None] * all_slopes(rods, rigid, across))[rows].T
+    start, end = (length[:, None] * all_slopes(rods, rigid, across)).T
     bent = rods.bending_stiffness > 0.0
-    sag = np.divide(
-        across * rods.rest_length**4, 24.0 * rods.bending_stiffness, out=np.zeros(len(bent)), where=bent
-    )[rows]
-    zero = np.zeros(len(sag))
+    zero = np.zeros(len(bent))
+    sag = np.divide(across * rods.rest_length**4, 24.0 * rods.bending_stiffness, out=zero.copy(), where=bent)
     cubic = _cubic(start, end)
-    cubic[~bent[rows]] = 0.0
-    sags = np.stack([zero, zero, sag, -2.0 * sag, sag], axis=1)
-    return _State(length[rows], left[rows], across[rows], cubic, sags)
+    cubic[~bent] = 0.0
+    return _State(length, left, across, cubic, np.stack([zero, zero, sag, -2.0 * sag, sag], axis=1))
 
 
 def inner_forces(model: Model, rows: Rows, quantity: str) -> Array:

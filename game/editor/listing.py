@@ -18,7 +18,7 @@ from pinjoint.systems.input.actions import LIVE, PROPERTIES, TABLE
 from pinjoint.systems.render.ui.listing import rows_in
 from pinjoint.tables import Table
 
-_WIDE, _NARROW = 860.0, 380.0  # points across tables of rods that bend or bear loads, and of others
+_WIDE, _NARROW = 860.0, 400.0  # points across tables of rods that bend or bear loads, and of others
 
 
 class Lister:
@@ -87,9 +87,9 @@ class Lister:
         now = (self._of, self.shown, self._by, self.first, model.tags_revision, place)
         if self._made is None or self._made[0] != now:
             order, titles = self._order, [tr("Forces in rods"), tr("Joints"), tr("Sums")]
-            self.first = min(max(self.first, 0), max(len(order) - rows_in(*place), 0))
+            first = min(max(self.first, 0), max(len(order) - rows_in(*place), 0))
             chosen = self._selected_rows
-            shown = order[self.first : self.first + rows_in(*place)]
+            shown = order[first : first + rows_in(*place)]
             heads = [(table.corner, ""), *((column.title, column.unit) for column in table.columns)]
             made = Listing(
                 titles=tuple(titles),
@@ -99,7 +99,7 @@ class Lister:
                 falls=self._by[1],
                 rows=tuple((row, row in chosen, table[1 + row]) for row in shown),
                 longest=max(table.names, key=len, default=""),
-                first=self.first,
+                first=first,
                 count=len(order),
             )
             self._made = now, made
@@ -111,14 +111,11 @@ class Lister:
         if chosen != self._chosen and chosen:
             if not any(handle.table == self.shown for handle in chosen):
                 self.turn_to(chosen[0].table)
-            self._reveal(next(handle.row for handle in chosen if handle.table == self.shown))
+            row = next(handle.row for handle in chosen if handle.table == self.shown)
+            if row < len(self.table.names):
+                at, shown = self._order.index(row), self.listing
+                self.first = min(max(shown.first, at - len(shown.rows) + 1), at)
         self._chosen = chosen
-
-    def _reveal(self, row: int) -> None:
-        """Scroll until a row is in sight."""
-        high = rows_in(self._context.view.table_place, self._context.view.pixel_ratio)
-        at = self._order.index(row) if row < len(self.table.names) else self.first
-        self.first = min(max(self.first, at - high + 1), at)
 
     # --- what a person does with it ------------------------------------------------------------------------
 
@@ -161,8 +158,8 @@ class Lister:
 
     def choose(self, by: int) -> None:
         """Select the element of the next row, or of the one before."""
-        order = self._order
-        here = [at for at, row in enumerate(order) if row in self._selected_rows]
+        order, chosen = self._order, self._selected_rows
+        here = [at for at, row in enumerate(order) if row in chosen]
         at = here[0] + by if here else 0 if by > 0 else len(self.table.names) - 1
         if 0 <= at < len(self.table.names):
             self._select(order[at])

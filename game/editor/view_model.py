@@ -56,11 +56,11 @@ def exaggerate(context: Context) -> None:
 def show(context: Context, elapsed: float) -> None:
     """Let the view show the session as it is now, so many seconds after the last time."""
     view, scene = context.view, context.scenes.active
-    view.forces_known = context.waits_for(context.simulation) is None
+    solved, statics = context.model.solution is not None, context.document.statics
+    view.forces_known = solved or context.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
     lately = context.document.chronicle.told(elapsed) if context.scene in LIVE else ""
-    solved, statics = context.model.solution is not None, context.document.statics
     if context.notice:
         lasting = [context.notice]
     elif solved:

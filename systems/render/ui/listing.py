@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.language import begun, tr
 from pinjoint.components.view import Listing, View
 from pinjoint.systems.render.marks import Panel, Picture
-from pinjoint.systems.render.theme import Theme, faded, pale
+from pinjoint.systems.render.theme import Colour, Theme, faded, pale
 from pinjoint.systems.render.typography import font_size, text_width
 from pinjoint.systems.render.ui.buttons import button, closing
 from pinjoint.systems.render.ui.layout import Column, Gap, Paper, Part, Plate, Row, Text
@@ -16,6 +18,7 @@ from pinjoint.systems.render.ui.layout import Column, Gap, Paper, Part, Plate, R
 _BAR, _HEADS, _ROW, _EDGE = 28.0, 44.0, 18.0, 8.0  # points: high, of titles, heads and rows; around all
 _SIZES = (11.0, 46.0, 10.0), (9.0, 36.0, 4.0)  # points: of type, across a column at least, between columns
 _NAME, _WIDEST = 110.0, 30.0  # points: across names at most, and what a column gets more where there is room
+_WHEEL = "table up", "table down"
 PRESSED = "press table"  # the action of all that can be pressed in it
 
 
@@ -31,14 +34,23 @@ def compose_listing(listing: Listing, view: View, theme: Theme) -> Picture:
     below = v.top > view.beside_strip.top
     paper.marks.append(Panel(v.left, v.top, *((v.width, thin) if below else (thin, v.height)), 0.0, theme.line))
     size, gap, widths = _widths(listing, v.width, u)
-    rows = [_row(row, listing, widths, gap, size, view, theme) for row in listing.rows]
-    parts = [_bar(listing, view, theme), _heads(listing, widths, gap, size, theme), *rows, Gap(grow=1.0)]
-    whole = Plate(Column(parts), action="", wheel=("table up", "table down"))
-    paper.put(whole, v)
-    if len(rows) < listing.count:
-        room = v.height - (_BAR + _HEADS) * u
-        length = max(room * len(rows) / listing.count, 16.0 * u)
-        top = v.top + (_BAR + _HEADS) * u + (room - length) * listing.first / (listing.count - len(rows))
+    ink = pale(theme.text, theme.panel) if view.provisional else theme.text
+    heads = Row([*_heads(listing, widths, size, theme)], gap, (_EDGE, 2.0, 3.0), high=_HEADS)
+    rows: list[Part] = [_bar(listing, view, theme), heads]
+    for number, selected, texts in listing.rows:
+        cells = [
+            Text(text, (size, 9.0), ink if at else theme.muted, anchor="right" if at else "left", wide=wide)
+            for at, (text, wide) in enumerate(zip(texts, widths, strict=True))
+        ]
+        inside = Row(cells, gap, (_EDGE, 0.0, 0.0), high=_ROW)
+        fill, hover = faded(theme.focus, 0.16) if selected else None, faded(theme.focus, 0.08 + 0.08 * selected)
+        row = Plate(inside, fill, hover=hover, radius=0.0, action=PRESSED, item=("row", number))
+        rows.append(replace(row, wheel=_WHEEL))
+    paper.put(Plate(Column((*rows, Gap(grow=1.0))), action="", wheel=_WHEEL), v)
+    if (hidden := listing.count - len(listing.rows)) > 0:
+        top, room = v.top + (_BAR + _HEADS) * u, v.height - (_BAR + _HEADS) * u
+        length = max(room * len(listing.rows) / listing.count, 16.0 * u)
+        top += (room - length) * listing.first / hidden
         paper.marks.append(Panel(v.right - 5.0 * u, round(top), 3.0 * u, round(length), 0.0, theme.muted))
     return Picture(v, theme.panel, paper.marks, hits=paper.hits)
 
@@ -59,31 +71,33 @@ def _widths(listing: Listing, width: float, u: float) -> tuple[float, float, lis
     return size, gap, [points + more for points in needed]
 
 
-def _bar(listing: Listing, view: View, theme: Theme) -> Row:
+def _bar(listing: Listing, view: View, theme: Theme) -> Part:
     """The titles of all tables, what can be done with the one that is shown, and the button that closes it."""
+    looks = partial(button, theme=theme, inset=0.0)
     tabs = [
-        _pressed(Text(begun(title), 12.0, theme.text, "semibold"), number, theme, title == listing.title)
-        for number, title in enumerate(listing.titles)
+        looks(
+            _padded(title, 12.0, theme.text, "semibold"),
+            PRESSED,
+            pressed=title == listing.title,
+            item=("title", n),
+        )
+        for n, title in enumerate(listing.titles)
     ]
     said = Text(view.provisional, 11.0, theme.halted, "semibold", grow=1.0)
-    copies = [
-        _pressed(Text(begun(title), 11.0, theme.muted), what, theme)
-        for title, what in ((tr("copy"), "copy table"), (tr("save as CSV"), "save table"))
+    saves = [
+        looks(_padded(title, 11.0, theme.muted), action)
+        for title, action in ((tr("copy"), "copy table"), (tr("CSV"), "save table"))
     ]
     close = closing("toggle table", theme, 20.0, size=0.75)
-    return Row((*tabs, Gap(4.0), said, *copies, close), 2.0, (_EDGE, 3.0, 3.0), high=_BAR)
+    return Row((*tabs, Gap(4.0), said, *saves, close), 2.0, (_EDGE, 3.0, 3.0), high=_BAR)
 
 
-def _pressed(text: Text, item: object, theme: Theme, pressed: bool = False) -> Plate:
-    """A button of the bar; of a title, it is for its number, else for an action."""
-    inside = Row((text,), around=(6.0, 0.0, 0.0))
-    action, item = (str(item), None) if isinstance(item, str) else (PRESSED, ("title", item))
-    return button(inside, action, theme, pressed=pressed, item=item, inset=0.0)
+def _padded(title: str, points: float, colour: Colour, weight: str = "regular") -> Part:
+    return Row((Text(begun(title), points, colour, weight),), around=(6.0, 0.0, 0.0))
 
 
-def _heads(listing: Listing, widths: Sequence[float], gap: float, size: float, theme: Theme) -> Row:
+def _heads(listing: Listing, widths: Sequence[float], size: float, theme: Theme) -> Iterator[Part]:
     """Titles and units, with an arrow at the one by which the rows are ordered."""
-    parts: list[Part] = []
     for number, ((title, unit), wide) in enumerate(zip(listing.heads, widths, strict=True)):
         arrow = (" ↓" if listing.falls else " ↑") if number == listing.by else ""
         anchor = "right" if number else "left"
@@ -92,35 +106,4 @@ def _heads(listing: Listing, widths: Sequence[float], gap: float, size: float, t
             Text(f"{unit}{arrow}".strip(), size, theme.muted, anchor=anchor, apart=13.0),
         )
         inside = Column((Gap(grow=1.0), *lines), wide=wide)
-        parts.append(button(inside, PRESSED, theme, item=("head", number), again=True, inset=-3.0))
-    return Row(parts, gap, (_EDGE, 2.0, 3.0), high=_HEADS)
-
-
-def _row(
-    row: tuple[int, bool, tuple[str, ...]],
-    listing: Listing,
-    widths: Sequence[float],
-    gap: float,
-    size: float,
-    view: View,
-    theme: Theme,
-) -> Plate:
-    """A row, which selects the element that it is of."""
-    number, selected, texts = row
-    ink = pale(theme.text, theme.panel) if view.provisional else theme.text
-    cells = [
-        Text(text, (size, 9.0), ink if at else theme.muted, anchor="right" if at else "left", wide=wide)
-        for at, (text, wide) in enumerate(zip(texts, widths, strict=True))
-    ]
-    fill = faded(theme.focus, 0.16) if selected else None
-    inside = Row(cells, gap, (_EDGE, 0.0, 0.0), high=_ROW)
-    return Plate(
-        inside,
-        fill,
-        None,
-        faded(theme.text, 0.06) if fill is None else fill,
-        radius=0.0,
-        action=PRESSED,
-        item=("row", number),
-        wheel=("table up", "table down"),
-    )
+        yield button(inside, PRESSED, theme, item=("head", number), again=True, inset=-3.0)
