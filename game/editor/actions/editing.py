@@ -15,8 +15,8 @@ from pinjoint.editor.clipboard import Part
 from pinjoint.editor.context import Context, tell
 from pinjoint.editor.gestures.drawing import Drawing, DrawSupport, tool_in_hand
 from pinjoint.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
+from pinjoint.editor.readouts import pin_at, pinned, retype
 from pinjoint.editor.scenes.properties import Properties
-from pinjoint.editor.scenes.statics import pin_at, pinned, retype
 from pinjoint.editor.toolbar import menu_at
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
