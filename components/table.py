@@ -10,7 +10,7 @@ from typing import Any, Generic, NoReturn, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.field import Column, Field, Role
+from pinjoint.components.field import MADE, Column, Field, Role
 from pinjoint.components.language import tr
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.wording import missing
@@ -183,7 +183,7 @@ class Table(Generic[H]):
         Where the world shows a solution in place of the state, that of the solution.
         """
         world = self._world()  # which may be gone
-        if world is not None and world.solution is not None:
+        if world is not None and world.solution is not None and self.fields[name].role not in MADE:
             found: Column | None = world.solution.columns.get(f"{self.name}.{name}")
             if found is not None:
                 return found
