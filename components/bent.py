@@ -30,7 +30,25 @@ FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn 
 MOST_PIECES = 32  # of a drawn rod
 _LARGEST = 1e6  # pieces that a rod would have to be cut into; such are left out
 _STEEP, _STEEPEST = 0.05, 2.5  # rad, slopes from which on tangents are drawn truly, and up to which
-_SAMPLES = 33  # between which a zero of a polynomial is looked for
+_SAMPLES, _ROUNDING = (
+    33,
+    2e-16,
+)  # between which a zero of a polynomial is looked for, and the shares that are one to it
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Rods: original positions of their ends (n, 2) in m, which two each joins, (p, 2), and which of these are rigid."""
+
+    position: Array
+    between: Rows
+    rigid: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, model: Model) -> Parts:
+        """All rods of a model."""
+        rods = model.rods
+        return cls(model.particles.position, rods.between.astype(np.intp), rods.turning_shares > 0.0)
 
 
 @dataclass(frozen=True)
@@ -48,14 +66,14 @@ class Axes:
     drift: Array | None = None
 
     @classmethod
-    def of(cls, model: Model, rows: Rows) -> Axes:
-        """The axes of some rods, as they are drawn.
+    def of(cls, model: Model, rows: Rows, scale: float | None = None) -> Axes:
+        """The axes of some rods, as they are drawn, or with displacements to another scale.
 
         Cubics by the slopes of their ends, and what a distributed force adds between: q ξ²(1 − ξ)² L₀⁴/24EI across. In small
         displacements both together are exact.
         """
         rods, state = model.rods, _state(model, rows)
-        particles, scale = model.particles, float(model.settings.displacement_scale)
+        particles, scale = model.particles, drawn_scale(model) if scale is None else scale
         ends = rods.between[rows].astype(np.intp)
         drawn = particles.position[ends] + particles.displacement[ends] * scale
         drift = _drift(state)
@@ -63,17 +81,16 @@ class Axes:
         return cls(drawn[:, 0], drawn[:, 1], state.left, scale * (state.cubic + state.sag), drift)
 
     @classmethod
-    def moved(cls, model: Model, rows: Rows, places: Array, displacement: Array, rotation: Array) -> Axes:
-        """The axes of some rods by small displacements (particles, 2) and rotations (particles,) that lead to places.
+    def moved(cls, parts: Parts, places: Array, displacement: Array, rotation: Array) -> Axes:
+        """The axes of rods by small displacements (particles, 2) and rotations (particles,) that lead to places.
 
         Their ends, at places (particles, 2), are all that is drawn of what was before.
         """
-        rods = model.rods
-        ends = rods.between[rows].astype(np.intp)
-        difference, length = rods.difference[rows], rods.original_length[rows]
+        ends, rigid = parts.between, parts.rigid
+        difference = parts.position[ends[:, 1]] - parts.position[ends[:, 0]]
+        length = np.hypot(*difference.T)
         left = np.stack([-difference[:, 1], difference[:, 0]], axis=1) / np.maximum(length, 1e-300)[:, None]
         chord = ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * left).sum(axis=1)
-        rigid = rods.turning_shares[rows] > 0.0
         slopes = np.where(rigid, length[:, None] * rotation[ends] - chord[:, None], 0.0)
         slopes = np.where(rigid, slopes, np.where(rigid[:, ::-1], -0.5 * slopes[:, ::-1], 0.0))
         return cls(places[ends[:, 0]], places[ends[:, 1]], left, _cubic(*slopes.T))
@@ -132,6 +149,13 @@ class Axes:
         return Lines(np.concatenate(starts)[order], np.concatenate(ends)[order], row[order])
 
 
+def drawn_scale(model: Model) -> float:
+    """By how much displacements are enlarged where elements are drawn and picked: 0 in statics, if a person wants it."""
+    settings = model.settings
+    original = model.solution is not None and settings.original_diagrams
+    return 0.0 if original else float(settings.displacement_scale)
+
+
 def is_frame(model: Model) -> bool:
     """True if some rod bends, if only by what acts along it between hinges."""
     return bool(model.rods.bending_stiffness.any())
@@ -151,6 +175,25 @@ def deflections(model: Model, rows: Rows) -> Array:
     """How far the axes of some rods are from their chords now (m), to the left, as polynomials (n, 5)."""
     state = _state(model, rows)
     return state.cubic + state.sag
+
+
+def displacements(model: Model, rows: Rows) -> Array:
+    """How far points of the axes of some rods have moved (m), as polynomials of x and y, (n, 2, 5)."""
+    state, (start, end) = _state(model, rows), model.particles.displacement[model.rods.between[rows].T]
+    found: Array = state.left[..., None] * (state.cubic + state.sag)[:, None]
+    found[..., 0] += start
+    found[..., 1] += end - start
+    return found
+
+
+def farthest(model: Model, rows: Rows) -> tuple[Array, Array]:
+    """The largest displacement (m) along each of some rods, and the share where it is, (n,) each."""
+    moved = displacements(model, rows)
+    squares = np.zeros((len(moved), 9))
+    for power in range(5):
+        squares[:, power : power + 5] += (moved[..., power, None] * moved).sum(axis=1)
+    found, shares = extremes(squares)
+    return np.sqrt(found[:, 1]), shares[:, 1]
 
 
 def _drift(state: _State) -> Array | None:
@@ -181,6 +224,14 @@ class _State(NamedTuple):
 
 
 def _state(model: Model, rows: Rows) -> _State:
+    revision, found = model.bent
+    if revision != model.revision:  # a picture asks nine times
+        found = _states(model)
+        model.bent = model.revision, found
+    return _State(*(column[rows] for column in found))
+
+
+def _states(model: Model) -> _State:
     rods, particles = model.rods, model.particles
     first, second = rods.between.astype(np.intp).T
     present = rods.difference
@@ -191,16 +242,13 @@ def _state(model: Model, rows: Rows) -> _State:
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
     across = along_and_across(model.share * rods.distributed_force, along)[1]
     rigid = rigid_slopes(rods, particles.rotation[rods.between], chord_rotation(model))
-    start, end = (length[:, None] * all_slopes(rods, rigid, across))[rows].T
+    start, end = (length[:, None] * all_slopes(rods, rigid, across)).T
     bent = rods.bending_stiffness > 0.0
-    sag = np.divide(
-        across * rods.rest_length**4, 24.0 * rods.bending_stiffness, out=np.zeros(len(bent)), where=bent
-    )[rows]
-    zero = np.zeros(len(sag))
+    zero = np.zeros(len(bent))
+    sag = np.divide(across * rods.rest_length**4, 24.0 * rods.bending_stiffness, out=zero.copy(), where=bent)
     cubic = _cubic(start, end)
-    cubic[~bent[rows]] = 0.0
-    sags = np.stack([zero, zero, sag, -2.0 * sag, sag], axis=1)
-    return _State(length[rows], left[rows], across[rows], cubic, sags)
+    cubic[~bent] = 0.0
+    return _State(length, left, across, cubic, np.stack([zero, zero, sag, -2.0 * sag, sag], axis=1))
 
 
 def inner_forces(model: Model, rows: Rows, quantity: str) -> Array:
@@ -224,14 +272,23 @@ def zeros(polynomials: Array) -> tuple[Rows, Array]:
     signs = np.sign(values(polynomials, samples))
     which, place = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0.0)
     low, high = samples[place], samples[place + 1]
-    before = signs[which, place]
-    for _ in range(50):  # halves the interval down to rounding
-        middle = 0.5 * (low + high)
-        same = values(polynomials[which], middle[:, None])[:, 0] * before > 0.0
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    before, slopes, step = signs[which, place], derivative(polynomials), 0.5 * (high - low)
+    share = low + step
+    for _ in range(
+        60
+    ):  # Newton's method, or half the interval where that is less: some five times, down to rounding
+        value = values(polynomials[which], share[:, None])[:, 0]
+        low, high = np.where(value * before > 0.0, share, low), np.where(value * before > 0.0, high, share)
+        slope = values(slopes[which], share[:, None])[:, 0]
+        newton = -np.divide(value, slope, out=np.full(len(value), np.inf), where=slope != 0.0)
+        safe = (share + newton >= low) & (share + newton <= high) & (np.abs(newton) < 0.5 * np.abs(step))
+        step = np.where(safe | (np.abs(newton) < _ROUNDING), newton, 0.5 * (low + high) - share)
+        if not (np.abs(step) >= _ROUNDING).any():
+            break
+        share = share + step
     touching, at = np.nonzero(signs[:, 1:-1] == 0.0)  # a sample that is a zero itself
     touching, at = (part[signs[touching, at] * signs[touching, at + 2] < 0.0] for part in (touching, at))
-    which, shares = np.concatenate([which, touching]), np.concatenate([0.5 * (low + high), samples[at + 1]])
+    which, shares = np.concatenate([which, touching]), np.concatenate([share, samples[at + 1]])
     order = np.lexsort((shares, which))
     return which[order], shares[order]
 
@@ -272,11 +329,12 @@ def largest_sag(model: Model) -> float:
 
 
 def middles(model: Model) -> Array:
-    """Some points between the ends of the rods that bend, as drawn (m), (n, 2)."""
+    """Some points between the ends of the rods that bend, deflected to the displacement scale (m), (n, 2)."""
     if not is_frame(model):
         return np.empty((0, 2))
     rows = np.flatnonzero(model.rods.bending_stiffness > 0.0)
-    return Axes.of(model, rows).points(np.array([0.25, 0.5, 0.75])).reshape(-1, 2)
+    axes = Axes.of(model, rows, float(model.settings.displacement_scale))
+    return axes.points(np.array([0.25, 0.5, 0.75])).reshape(-1, 2)
 
 
 class Lines(NamedTuple):

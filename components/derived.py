@@ -119,6 +119,19 @@ def bending(world: World) -> None:
         ):
             world.writable(f"rods.{name}")[...] = 0.0
         return
+    with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
+        per_slope, of_ends = by_hinges(rigid, length)
+        world.writable("rods.end_stiffness")[...] = (stiffness / length)[:, None] * per_slope
+        damping = _or_automatic(rods.bending_damping, rods.damping * stiffness / rods.stiffness)
+        world.writable("rods.end_damping")[...] = damping[:, None] * per_slope
+        half = -0.5 * rods.thermal_expansion * rods.temperature_gradient * length
+        world.writable("rods.initial_slopes")[...] = half[:, None] * rigid * [-1.0, 1.0] + 0.0
+    for name, values in of_ends.items():
+        world.writable(f"rods.{name}")[...] = values
+
+
+def by_hinges(rigid: Column, length: Column) -> tuple[Column, dict[str, Column]]:
+    """End stiffnesses per EI/L₀, (rods, 3), and load_shares, bowing and turning_shares of rods with these rigid ends."""
     both = np.asarray(rigid.all(axis=1))
     start, end = (rigid & ~both[:, None]).T  # the only rigid end
 
@@ -131,18 +144,13 @@ def bending(world: World) -> None:
         )
         return np.stack(rows, axis=1)
 
-    per_slope = by_ends(4.0, 2.0, 4.0, 3.0)
-    with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
-        world.writable("rods.end_stiffness")[...] = (stiffness / length)[:, None] * per_slope
-        damping = _or_automatic(rods.bending_damping, rods.damping * stiffness / rods.stiffness)
-        world.writable("rods.end_damping")[...] = damping[:, None] * per_slope
-        half = -0.5 * rods.thermal_expansion * rods.temperature_gradient * length
-        world.writable("rods.initial_slopes")[...] = half[:, None] * rigid * [-1.0, 1.0] + 0.0
-        area = by_ends(1.0 / 12.0, 0.0, -1.0 / 12.0, 1.0 / 8.0)[:, ::2] * (length**2)[:, None]
+    area = by_ends(1.0 / 12.0, 0.0, -1.0 / 12.0, 1.0 / 8.0)[:, ::2] * (length**2)[:, None]
     area[end, 1] *= -1.0
-    world.writable("rods.load_shares")[...] = area
-    world.writable("rods.bowing")[...] = by_ends(4.0 / 30.0, -1.0 / 30.0, 4.0 / 30.0, 0.2)
-    world.writable("rods.turning_shares")[...] = by_ends(0.5, 0.0, 0.5, 1.0)[:, ::2]
+    return by_ends(4.0, 2.0, 4.0, 3.0), {
+        "load_shares": area,
+        "bowing": by_ends(4.0 / 30.0, -1.0 / 30.0, 4.0 / 30.0, 0.2),
+        "turning_shares": by_ends(0.5, 0.0, 0.5, 1.0)[:, ::2],
+    }
 
 
 @derives(

@@ -90,8 +90,9 @@ class Settings(Handle):
     )
     original_diagrams: Field[bool] = look(
         dtype=bool,
-        title="diagrams on undeformed rods",
-        doc="Force diagrams of rods that bend are drawn on the undeformed rods.",
+        default=True,
+        title="statics on the undeformed shape",
+        doc="In statics, the structure and its diagrams are drawn undeformed, and its deflected shape as a thin line.",
     )
     diagrams: Field[str] = look(
         default=NO_DIAGRAMS,

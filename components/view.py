@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.additions import outlines
-from pinjoint.components.bent import AXIAL, middles
+from pinjoint.components.bent import AXIAL, Parts, drawn_scale, middles
 from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
@@ -32,6 +32,7 @@ COVERED = 0.75  # of this margin, what arrows and the legend may take
 COLUMN = 310.0  # points: the width of panels, boxes to type into, or a lesson, beside a model
 LEAST_MODEL = 230.0  # points that the model keeps beside boxes, or they take all
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
+TABLE_SHARE = 0.36  # of a window's height, that a table of results takes below a model
 LEAST_FOR_LESSON = 860.0  # points of a window's width from which on a lesson is a column, else a strip below
 STRIP, STRIP_SHARE = 230.0, 0.4  # points, and share of the height at most, of this strip
 
@@ -116,6 +117,26 @@ class Page:
 
 
 @dataclass(frozen=True)
+class Listing:
+    """Those rows of a table of results that are in sight, beside or below a model.
+
+    titles: of all tables; title: of the one that is shown. heads: (title, unit) of its columns. by: the column by which its
+    rows are ordered, falls: the largest first. rows: their texts, each with its number in the table, and whether it is
+    selected. longest: the longest name. first: of how many rows, `count`, the first is that is in sight.
+    """
+
+    titles: tuple[str, ...]
+    title: str
+    heads: tuple[tuple[str, str], ...]
+    by: int
+    falls: bool
+    rows: tuple[tuple[int, bool, tuple[str, ...]], ...]
+    longest: str
+    first: int
+    count: int
+
+
+@dataclass(frozen=True)
 class Plot:
     """Curves over common axes, whose titles name quantity and unit.
 
@@ -176,7 +197,8 @@ class Shape:
 
     title: such as "Mode 1 of 5: 9.276 Hz". displacement: (m), as drawn, (n, 2). about: the displacement (m) of the
     equilibrium that it leads away from, (n, 2); None: it leads away from the original positions. rotation: (rad), on the
-    scale of the displacement, (n,); None: nothing turns. note: a sentence about what it leaves out, or "".
+    scale of the displacement, (n,); None: nothing turns. note: a sentence about what it leaves out, or "". parts: what is
+    drawn, where rods are divided for it; its places follow the particles in all arrays of the shape.
     """
 
     title: str
@@ -184,6 +206,7 @@ class Shape:
     about: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
     rotation: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
     note: str = field(default="", compare=False)
+    parts: Parts | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -235,10 +258,11 @@ class View:
     wanted: which of our own a person switched on among them: theory beside the run, its energy, its events.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
-    panel appeared.
+    panel appeared. table: the points across that a table of results wants beside the model; 0: there is none.
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     provisional: why what is shown is no equilibrium, which makes results pale; "": it is one.
     card: a task of a lesson, in place of a model. cuts: rods that are drawn cut. has_units: values of forces tell theirs.
+    steady: a hand moves something, so that labels stay beside what they belong to.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -279,11 +303,13 @@ class View:
     pointed: Readout | None = None
     fitted: bool = False
     shares: bool = False
+    table: float = 0.0
     aside: Viewport | None = None
     provisional: str = ""
     card: Card | None = None
     cuts: tuple[Cut, ...] = ()
     has_units: bool = True
+    steady: bool = False
 
     @property
     def looks(self) -> tuple[object, ...]:
@@ -337,10 +363,10 @@ class View:
         right, top = places[0].right, places[-1].top
         return bool(x.min() - ARROW * self.pixel_ratio < right and y.max() + reach > top)
 
-    def share(self, model: Model, *, shares: bool) -> None:
-        """Leave room for panels, or not, and fit the model into what is left, unless somebody looks closer."""
-        if shares != self.shares:
-            self.shares = shares
+    def share(self, model: Model, *, shares: bool, table: float = 0.0) -> None:
+        """Leave room for panels and a table, or not, and fit the model into what is left, unless somebody looks closer."""
+        if (shares, table) != (self.shares, self.table):
+            self.shares, self.table = shares, table
             if self.fitted:
                 self.fit(model)
 
@@ -358,15 +384,34 @@ class View:
         return apart
 
     @property
+    def beside_strip(self) -> Viewport:
+        """All of the viewport but the toolbar."""
+        window, taken = self.camera.viewport, self.strip.width
+        return replace(window, left=window.left + taken, width=window.width - taken)
+
+    @property
+    def table_place(self) -> Viewport:
+        """Where a table of results stands: at the right where the model keeps enough, else below; of no size without one."""
+        whole, wide = self.beside_strip, round(self.table * self.pixel_ratio)
+        if wide == 0 or whole.width >= wide + LEAST_BESIDE * self.pixel_ratio:
+            return replace(whole, left=whole.left + whole.width - wide, width=wide)
+        high = round(TABLE_SHARE * whole.height)
+        return replace(whole, top=whole.top + whole.height - high, height=high)
+
+    @property
     def canvas(self) -> Viewport:
         """The part of the viewport that is left for the model."""
-        window, taken = self.camera.viewport, self.strip.width
-        left, right = window.left + taken, window.left + window.width
+        whole, table = self.beside_strip, self.table_place
+        left, right, bottom = whole.left, whole.left + whole.width, whole.top + whole.height
+        if table.top > whole.top:
+            bottom = table.top
+        else:
+            right = table.left
         if self.aside is not None and self.aside.left > left:
             right = self.aside.left
         elif self.aside is not None:
             left = self.aside.left + self.aside.width
-        return Viewport(left, window.top, right - left, window.height)
+        return Viewport(left, whole.top, right - left, bottom - whole.top)
 
     def beside(self, *, at_left: bool) -> Viewport | None:
         """Where boxes to type into stand beside the model; None where they would leave too little of it."""
@@ -377,8 +422,9 @@ class View:
         return replace(c, left=c.left if at_left else c.left + c.width - width, width=width)
 
     def covers(self, pixel: Vector) -> bool:
-        """True if the toolbar, a slider or boxes to type into are at a pixel of the window, not the model."""
-        taken = self.strip.contains(pixel) or self.slider_at(pixel) is not None
+        """True if the toolbar, a table, a slider or boxes to type into are at a pixel of the window, not the model."""
+        taken = any(place.contains(pixel) for place in (self.strip, self.table_place))
+        taken = taken or self.slider_at(pixel) is not None
         return taken or (self.aside is not None and self.aside.contains(pixel))
 
     @property
@@ -419,12 +465,15 @@ class View:
 
 def drawn_positions(model: Model) -> NDArray[np.float64]:
     """Where particles are drawn (m), shape (n, 2): original position + displacement × scale."""
-    particles = model.particles
-    drawn: NDArray[np.float64] = particles.position + particles.displacement * model.settings.displacement_scale
+    drawn: NDArray[np.float64] = model.particles.position + model.particles.displacement * drawn_scale(model)
     return drawn
 
 
 def drawn_places(model: Model) -> NDArray[np.float64]:
-    """All that a picture of a model is to show (m), (n, 2): drawn positions, bent rods, and points of other elements."""
+    """All that a picture of a model is to show (m), (n, 2): positions as drawn and deflected, bent rods, and points of other
+    elements.
+    """
+    particles, scales = model.particles, {drawn_scale(model), float(model.settings.displacement_scale)}
+    places = (particles.position + particles.displacement * scale for scale in scales)
     others = (points.reshape(-1, 2) for _, points in outlines(model))
-    return np.concatenate([drawn_positions(model), middles(model), *others])
+    return np.concatenate([*places, middles(model), *others])

@@ -82,6 +82,7 @@ class World:
         self.changing = False
         self.solution: Solution | None = None
         self._shown_since = 0  # revision at which the solution took the place of the state, or gave it back
+        self.bent: tuple[int, Any] = -1, ()  # how rods are bent, found at this revision (bent.py)
         self._naming: Callable[[int, str], str] | None = None
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}

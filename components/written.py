@@ -27,8 +27,11 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
-def as_csv(rows: Iterable[Iterable[Any]]) -> str:
+def as_csv(rows: Iterable[Iterable[Any]], *, local: bool = False, between: str = "") -> str:
     """Rows as CSV: numbers in full, True and False as 1 and 0, None as nothing, texts so that they stay texts.
+
+    local: as spreadsheets of the present language read it, numbers with its decimal sign, and semicolons between them where
+    that is a comma. between: what stands there instead.
 
     A spreadsheet takes a text that begins with =, +, -, @, a tabulator or a carriage return for a formula: such a text, or
     one with apostrophes before that, gets an apostrophe in front, which a reader takes away again.
@@ -37,11 +40,14 @@ def as_csv(rows: Iterable[Iterable[Any]]) -> str:
     def cell(value: Any) -> Any:
         if isinstance(value, str) and value.lstrip("'").startswith(_FORMULA):
             return f"'{value}"
+        if local and isinstance(value, float):
+            return decimals(repr(value))
         return int(value) if isinstance(value, bool) else value
 
     text = io.StringIO()
-    usual = csv.writer(text, lineterminator="\n")  # leaves carriage returns bare
-    quoted = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
+    between = between or (";" if local and decimals(".") == "," else ",")
+    usual = csv.writer(text, delimiter=between, lineterminator="\n")  # leaves carriage returns bare
+    quoted = csv.writer(text, delimiter=between, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
     for row in rows:
         cells = list(map(cell, row))
         (quoted if any(isinstance(cell, str) and "\r" in cell for cell in cells) else usual).writerow(cells)

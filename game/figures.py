@@ -101,7 +101,7 @@ def figure(
     view.largest_force = _SHORTER * largest_force(model, view)
     pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
     model.settings.diagram_scale = scale_to(_DIAGRAM, pulled)
-    model.settings.displacement_scale = 0.0
+    model.settings.displacement_scale, model.settings.original_diagrams = 0.0, not moved
     if moved:
         bows = extremes(deflections(model, np.flatnonzero(model.rods.bending_stiffness > 0.0)))[0]
         most = max(float(np.hypot(*model.particles.displacement.T).max(initial=0.0)), largest(bows))

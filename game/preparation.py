@@ -101,7 +101,10 @@ class Preparation(System):
         """Say what is needed next; and once each, what could not be compiled or kept."""
         simulation = frame.session.simulation
         before, self._structure = self._structure, simulation.model.structure
-        if before == self._structure:  # what was made or deleted is seen first
+        follows = (
+            frame.session.view.steady and not frame.session.busy
+        )  # a hand, which modes of a frame hold up for 60 ms
+        if before == self._structure and not follows:  # what was made or deleted is seen first
             self._ask(simulation)
             self._compile_here()
             seen, self._seen = self._seen, simulation.model.revision

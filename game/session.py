@@ -42,6 +42,7 @@ from pinjoint.systems.input.actions import (
     FORMS,
     LIVE,
     SIMULATION,
+    TABLE,
     TEXT,
 )
 from pinjoint.systems.run.system import Time
@@ -164,8 +165,13 @@ class Session(Headless):
         Called after actions, never because of time or frames, so that a recording is replayed in the same picture.
         """
         view = self.view
-        wanted = view.wanted or view.free_bodies or any(readout.is_large for readout in readouts(self))
-        view.share(self.model, shares=view.legend and bool(wanted))
+        wanted = (
+            view.wanted - {TABLE} or view.free_bodies or any(readout.is_large for readout in readouts(self))
+        )
+        table = self.lister.wanted if view.legend else 0.0
+        view.share(self.model, shares=view.legend and bool(wanted), table=table)
+        if table:
+            self.lister.follow()
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
         """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing.

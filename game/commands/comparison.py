@@ -147,7 +147,7 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
             way: by_element(model, static_facts(model, state)) if state is not None else None
             for way, state in (("linear", theory.linear), ("exact", theory.exact))
         },
-        "frequencies": {"unloaded": free.hertz.tolist(), "loaded": loaded},
+        "frequencies": {"unloaded": free.hertz.tolist(), "loaded": loaded, "in_motion": free.lumped},
         "frequencies_note": free.note,
         "simulation": None,
         "linear": {
@@ -268,11 +268,7 @@ def lines(found: Found) -> Iterator[str]:
         if frequencies := found["frequencies"][when]:
             values = [*map(as_written, frequencies[:SHOWN]), *(["…"] if len(frequencies) > SHOWN else [])]
             yield tr(said, values="  ".join(values))
-    if found["frequencies_note"]:
-        yield tr(
-            "Rods vibrate with their masses at their ends, which is coarse here: {note}",
-            note=found["frequencies_note"],
-        )
+    yield from filter(None, [found["frequencies_note"]])
     for quantity, (_, unit, title) in QUANTITIES.items():
         shown, factor = _IN_TABLES.get(unit, (unit, 1.0))
         rows = {f"{name} {tr(axis)}".rstrip(): values for name, axis, values in _values(found, quantity)}

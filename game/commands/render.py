@@ -96,6 +96,20 @@ def _parser() -> Parser:
         ),
     )
     add_theory(parser, None)
+    undeformed = parser.add_mutually_exclusive_group()
+    undeformed.add_argument(
+        "--undeformed",
+        action="store_true",
+        default=None,
+        help=tr("with --static: draw the undeformed structure, and its deflected shape thin (the usual way)"),
+    )
+    undeformed.add_argument(
+        "--deformed",
+        action="store_false",
+        dest="undeformed",
+        default=None,
+        help=tr("with --static: draw the deformed structure, with its diagrams"),
+    )
     parser.add_argument("--diagrams", action="store_true", help=tr("draw all force diagrams"))
     parser.add_argument(
         "--diagrams-of",
@@ -163,8 +177,10 @@ def _check_background(options: argparse.Namespace) -> None:
 
 def _check_static(options: argparse.Namespace) -> None:
     """Raise UsageError where an option does not go with statics."""
-    if options.theory is not None and not options.static:
-        raise UsageError("{option} works only together with --static; add it.", option="--theory")
+    shapes = {True: "--undeformed", False: "--deformed", None: ""}
+    option = "--theory" if options.theory is not None else shapes[options.undeformed]
+    if option and not options.static:
+        raise UsageError("{option} works only together with --static; add it.", option=option)
     moving = options.until_rest or options.at is not None or options.output.lower().endswith(".gif")
     if options.static and moving:
         raise UsageError("--static: nothing moves in statics; leave out --until-rest, --at and .gif.")
@@ -174,6 +190,8 @@ def _solve(session: Session, options: argparse.Namespace) -> str:
     """Show the static equilibrium in place of the state; returns its status."""
     if options.theory is not None:
         session.model.settings.theory = options.theory
+    if options.undeformed is not None:
+        session.model.settings.original_diagrams = options.undeformed
     session.scenes.request("statics")
     session.scenes.apply(session)
     settlement = session.document.statics.settlement

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import written
+from pinjoint.components.bent import Parts
 from pinjoint.components.field import Role
 from pinjoint.components.language import marked, tr
 from pinjoint.components.mistake import Mistake
@@ -169,23 +170,28 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
         return []
     degrees = Indeterminacy.of(model)
     about = Start.present(model) if rests_under_load(model) else None
-    unknowns = degrees.mechanisms + degrees.rank
-    wanted = min(unknowns if unknowns <= FULL else LOWEST_OF_LARGE, unknowns if most is None else most)
-    found = Vibrations.of(model, about, count=degrees.mechanisms + wanted)
+    if most is None and degrees.mechanisms + degrees.rank > FULL:
+        most = LOWEST_OF_LARGE
+    found = Vibrations.of(model, about, count=None if most is None else degrees.mechanisms + most)
     still = degrees.mechanisms if about is None else int((found.angular_squared <= 0.0).sum())
     modes = list(zip(found.hertz[still:].tolist(), found.modes[still:], strict=True))
     title, places = marked("Mode {number} of {count}: {hertz} Hz"), None
     if about is not None:
-        title, places = marked("Mode {number} of {count} under load: {hertz} Hz"), about.displacement
+        title, places = marked("Mode {number} of {count} under load: {hertz} Hz"), found.place[:, :2]
+    divided, structure = len(found.place) > model.particles.count, found.structure
+    parts = None
+    if divided and structure.bending is not None:
+        parts = Parts(structure.position, structure.ends, structure.bending.rigid)
     return [
         _shape(
             model,
-            tr(title, number=number, count=unknowns - still, hertz=written.number(hertz)),
+            tr(title, number=number, count=found.total - still, hertz=written.number(hertz)),
             motion,
             places,
             found.note,
+            parts,
         )
-        for number, (hertz, motion) in enumerate(modes[:wanted], start=1)
+        for number, (hertz, motion) in enumerate(modes[:most], start=1)
     ]
 
 
@@ -218,9 +224,10 @@ def _shape(
     motion: NDArray[np.float64],
     about: NDArray[np.float64] | None = None,
     note: str = "",
+    parts: Parts | None = None,
 ) -> Shape:
-    drawn = DRAWN_SHARE * extent(model) / max(1.0, _bulge(model, motion)) * motion
-    return Shape(title, drawn[:, :2], about, drawn[:, 2] if drawn.shape[1] > 2 else None, note)
+    drawn = DRAWN_SHARE * extent(model) / max(1.0, 0.0 if parts else _bulge(model, motion)) * motion
+    return Shape(title, drawn[:, :2], about, drawn[:, 2] if drawn.shape[1] > 2 else None, note, parts)
 
 
 def _bulge(model: Model, motion: NDArray[np.float64]) -> float:

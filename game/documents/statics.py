@@ -22,6 +22,7 @@ if TYPE_CHECKING:  # it imports scipy
 
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
 MOST_COMPARED = 300  # rods, up to which both theories take a moment only
+REST = 0.2  # s without an edit, after which a window compares them
 _CHOICES = "theory", "load_steps"  # of the settings
 _MOVED = "displacement", "rotation"  # of constrained directions: settled supports
 
@@ -43,6 +44,7 @@ class Statics:
         self.problem = ""
         self.revision, self.offered = 0, -1
         self._compared = -1, ""  # the revision of which the theories were compared, and what is said of them
+        self._rest = -1, 0.0  # the revision that was asked for last, and since when (s)
 
     @property
     def settlement(self) -> Settlement | None:
@@ -140,12 +142,19 @@ class Statics:
             start = Start.undeformed(model, self._strain())
             return settle(model, factors, theory or settings.theory, start)
 
-    @property
-    def second_order(self) -> str:
-        """By how much, and where, the theories differ, where that is worth a word; "" of a large structure."""
+    def second_order(self, elapsed: float | None = None) -> str:
+        """By how much, and where, the theories differ, where that is worth a word; "" of a large structure.
+
+        elapsed: s since it was asked for last, in a window, where nothing is said until the hand has rested, since it takes
+        another solution; None: at once.
+        """
         settlement = self.settlement
         if settlement is None or not settlement.final.balanced or self._model.rods.count > MOST_COMPARED:
             return ""
+        if elapsed is not None:
+            self._rest = self.revision, self._rest[1] + elapsed if self._rest[0] == self.revision else 0.0
+            if self._rest[1] < REST:
+                return ""
         if self._compared[0] != self.revision:
             from pinjoint.systems.statics.second_order import SecondOrder
 

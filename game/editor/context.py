@@ -22,6 +22,7 @@ from pinjoint.components.settings import HUBS, STATICS, Settings
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import Preview, View
 from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments
+from pinjoint.editor.listing import Lister
 from pinjoint.scripts.script import Script
 from pinjoint.systems.base import Mod
 from pinjoint.systems.collision.impacts import Impacts
@@ -159,6 +160,10 @@ class Scene:
         """The settings of the models whose displacements are drawn to the scale that its slider sets."""
         return [context.model.settings]
 
+    def turn_to(self, context: Context, handle: Handle) -> None:
+        """Select an element beside what is done now."""
+        context.select(handle)
+
     def type(self, context: Context, text: str) -> None:
         """Text was typed."""
 
@@ -257,6 +262,7 @@ class Context:
     scenes: the mode, and its transitions. gesture: what is being drawn or dragged. footer: the strip below the picture while
     a script is shown in the window; then input is not for the scenes, and no time passes by itself.
     lesson: the script that a person asked for. course: the lessons.course.Course that a person is in.
+    lister: the table of results.
     faults_seen: how many faults of mods were shown and taken away.
     """
 
@@ -277,6 +283,7 @@ class Context:
         self.footer: View | None = None
         self.lesson: Script | None = None
         self.course: Any = None
+        self.lister = Lister(self)
         self._blank = Model()
         self.faults_seen = len(EXTENSIONS.faults)
 
@@ -463,6 +470,7 @@ class Context:
         """All that is drawn: models and forms of the active scene, each in its view, toolbar and footer."""
         stages = list(self.scenes.active.stages(self))
         if not self.scenes.active.covers(self):
+            stages += [(self.lister.listing, self.view)] if self.view.table else []
             stages.append((self.view.toolbar, self.view))
         card = self.course.view if self.course is not None else None
         return stages + [(self._blank, view) for view in (self.footer, card) if view is not None]

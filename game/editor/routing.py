@@ -5,7 +5,7 @@ from __future__ import annotations
 from pinjoint.components.field import Vector
 from pinjoint.components.view import Hit, Readout
 from pinjoint.editor.context import Context
-from pinjoint.systems.input.actions import ACTIONS, FORMS, LIVE, MENU
+from pinjoint.systems.input.actions import ACTIONS, FORMS, LIVE, MENU, TABLE
 from pinjoint.systems.render.picture import hits_at
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.controls import SLIDER
@@ -76,6 +76,9 @@ class Press:
         if view.help and key == "escape":
             return "close help", pixel
         scene = LIVE[0] if self.for_tools else self._context.scene
+        over = scene in LIVE and view.table_place.contains(pixel) and key not in AT_POINTER
+        if over and (found := ACTIONS.name_at(TABLE, key)) is not None:
+            return found, pixel
         found = ACTIONS.name_at(scene, key)
         if found is None and key == "double click":  # where it means nothing special, it is another click
             found = ACTIONS.name_at(scene, "click")

@@ -29,7 +29,7 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("undo", "redo", "copy", "paste", "duplicate", "delete"),
     (PLACE, "rod", "rigid", "hinge", "support", "force", "moment", "velocity"),
     (
-        *("toggle diagrams", "toggle free bodies", "toggle theory", "toggle energy"),
+        *("toggle diagrams", "toggle free bodies", "toggle theory", "toggle energy", "toggle table"),
         *("next shape", "fit", "new grid", "next grid"),
     ),
     ("properties", "force method", "new", "load", "save again", "save"),
@@ -150,8 +150,10 @@ def _of_canvas(context: Context) -> Groups:
             "select all",
         ],
         ["toggle run", "restart", "settle", "toggle statics", "next theory"],
-        ["toggle diagrams", "toggle free bodies", "toggle utilisation"],
-        ["toggle theory", "toggle energy", "toggle events", "next shape"],
+        [
+            *("toggle diagrams", "toggle undeformed", "toggle free bodies", "toggle utilisation", "next shape"),
+            *("toggle table", "toggle theory", "toggle energy", "toggle events"),
+        ],
         [*of_mods(draw=False)],
         ["fit", "new grid", "next grid", "toggle legend", "next theme", "next language"],
         [

@@ -16,6 +16,7 @@ from pinjoint.components.tags import Hovered
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import DrawRod
+from pinjoint.editor.gestures.moving import Placing
 from pinjoint.editor.readouts import readouts
 from pinjoint.editor.sliders import slider_stack
 from pinjoint.editor.toolbar import toolbar_of
@@ -54,15 +55,16 @@ def exaggerate(context: Context) -> None:
 def show(context: Context, elapsed: float) -> None:
     """Let the view show the session as it is now, so many seconds after the last time."""
     view, scene = context.view, context.scenes.active
-    view.forces_known = context.waits_for(context.simulation) is None
+    solved, statics = context.model.solution is not None, context.document.statics
+    view.forces_known = solved or context.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
     lately = context.document.chronicle.told(elapsed) if context.scene in LIVE else ""
-    solved, statics = context.model.solution is not None, context.document.statics
     if context.notice:
         lasting = [context.notice]
     elif solved:
-        lasting = [statics.message, statics.second_order if context.gesture is None else ""]
+        rested = None if context.window is None else elapsed
+        lasting = [statics.message, statics.second_order(rested) if context.gesture is None else ""]
     else:
         remarks = [remark.message for remark in context.document.assessment.remarks]
         lasting = [*remarks, "" if follows(context) else _gone(context)]
@@ -71,7 +73,7 @@ def show(context: Context, elapsed: float) -> None:
     if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
         view.pressed = None
     view.flashes = _flashes(context)
-    view.heading = tr(scene.heading)
+    view.heading, view.steady = tr(scene.heading), isinstance(context.gesture, Placing)
     view.provisional = _provisional(context)
     view.shape = context.document.shapes.shown
     view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0

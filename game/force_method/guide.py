@@ -110,15 +110,17 @@ class Mechanism:
 class Guide:
     """The present part of the force method, and the answers so far.
 
-    part: 1 to PARTS. released: the static unknowns, the newest last. solution: with all of them. sets: those that exist so
-    far. mechanism: that which a refused release would leave. quantity: of which frames show diagrams. Raises
-    ForceMethodError at the start if the structure cannot carry its load.
+    part: 1 to PARTS, of which 5 and 6 are gone through for every unknown. released: the static unknowns, the newest last.
+    solution: with all of them. acting: the number, from 0, of that which acts in set 3. sets: those that exist so far.
+    mechanism: that which a refused release would leave. quantity: of which frames show diagrams. Raises ForceMethodError at
+    the start if the structure cannot carry its load.
     """
 
     def __init__(self, model: Model, schedule: Schedule, view: View) -> None:
         self.model, self._schedule, self._view = model, schedule, view
         self.part = 1
         self.released: list[Unknown] = []
+        self.acting = self._known = 0  # _known: those of a solution before
         self.solution: Solution | None = None
         self.exact: list[float] | None = None
         self.refusal = ""
@@ -133,8 +135,8 @@ class Guide:
 
     @property
     def unknown(self) -> Unknown | None:
-        """The newest unknown."""
-        return self.released[-1] if self.released else None
+        """The unknown that acts in set 3, or is to."""
+        return self.released[self.acting] if self.released else None
 
     @property
     def in_thesis(self) -> bool:
@@ -206,19 +208,24 @@ class Guide:
     # --- going on ----------------------------------------------------------------------------------
 
     def next(self) -> bool:
-        """Go on to the next part; False after the last. Part 2 is left by picking an unknown."""
+        """Go on to the next part; False after the last. Part 2 is left by picking all unknowns, or with some of them."""
         self._forget_refusal()
         if self.part == PARTS:
             return False
         for running in self.running:
             running.settle()
         if self.part == 2:
-            self.refusal = tr("First click the rod or the support to release, in set 1.")
+            if len(self.released) > self._known:
+                self._release()
+            else:
+                self.refusal = tr("First click the rod or the support to release, in set 1.")
             return True
         self.part += 1
+        if self.part == PARTS and self.acting < len(self.released) - 1:
+            self.acting, self.part = self.acting + 1, 5
         if self.part == 5 and self.solution is not None:
-            alone = [0.0] * (len(self.released) - 1) + [1.0]
-            self.sets.append(self._make_set(self.released, self._times(alone), alone))
+            alone = [float(number == self.acting) for number in range(len(self.released))]
+            self.sets = [*self.sets[:2], self._make_set(self.released, self._times(alone), alone)]
             self._scale_alike()
         elif self.part == PARTS:
             self._apply_forces()
@@ -233,10 +240,10 @@ class Guide:
         """Repeat the method for a further unknown, those so far released as well (part 7 → part 2)."""
         if self.part == PARTS:
             self.sets[2].settle()
-            self.sets, self.part = self.sets[:1], 2
+            self.sets, self.part, self._known = self.sets[:1], 2, len(self.released)
 
     def pick(self, hit: Handle | None, near: Vector = (0.0, 0.0)) -> None:
-        """Take the element that was clicked in set 1 at a point (m) as the unknown (part 2)."""
+        """Take the element that was clicked in set 1 at a point (m) as an unknown (part 2)."""
         self._forget_refusal()
         self.axis_wanted = None
         if isinstance(hit, Rod):
@@ -284,14 +291,19 @@ class Guide:
                 self.mechanism = Mechanism(left, error.motion, view_like(self._view))
             return
         self.released, self.axis_wanted = wanted, None
-        self.exact = exact_forces(self.model, wanted)
         first = self.sets[0].model  # in which the released elements are drawn as selected
         tables: dict[str, Table[Any]] = first.tables
         first.tag_only([tables[one.element.table][one.element.name] for one in wanted], Selected)
-        base = self._make_set(wanted, self.solution.base)
-        self.sets = [self.sets[0], base]
+        if len(wanted) == self.count.degree:
+            self._release()
+
+    def _release(self) -> None:
+        """Go on with what was picked (part 2 → part 3)."""
+        assert self.solution is not None
+        self.exact = exact_forces(self.model, self.released)
+        self.sets = [self.sets[0], self._make_set(self.released, self.solution.base)]
         self._scale_alike()
-        self.part = 3
+        self.part, self.acting = 3, self._known
 
     def _forget_refusal(self) -> None:
         self.refusal, self.mechanism = "", None

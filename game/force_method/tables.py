@@ -94,9 +94,9 @@ class Tables:
         return [names[row] for row in rows.tolist()]
 
     def _products(
-        self, which: Sequence[int], rows: Rows, terms: Terms, other: Terms, heads: str
+        self, which: Sequence[int], rows: Rows, terms: Terms, other: Terms, heads: str, last: int | None
     ) -> list[Column]:
-        """The terms of some rods for some unknowns: of the load, without force, and of units.
+        """The terms of some rods for some unknowns: of the load, without force, and of units; last: those of one alone.
 
         other: terms of the same sums, next to which they may be rounding. heads: what is summed, such as "∫ M₀ m /EI κ".
         """
@@ -107,28 +107,29 @@ class Tables:
             least = self.factor * max(largest(values), least)
             found.append(Column(f"{whole}{title}", unit, self.factor * values[rows], summed=True, least=least))
 
-        for i in which:
+        of = which if last is None else [last]
+        for i in of:
             add(
                 f"{large}{small}{index(i + 1)}{per}",
                 self.gap_unit(i),
                 terms.of_load[i],
                 largest(other.of_load[i]),
             )
-        for i in which if terms.of_free.any() else ():
+        for i in of if terms.of_free.any() else ():
             add(f"{small}{index(i + 1)}{free}", self.gap_unit(i), terms.of_free[i])
-        for i, j in _pairs(which):
+        for i, j in ((i, j) for i in which for j in of if i <= j):
             both = f"{index(i + 1)}²" if i == j else f"{index(i + 1)}{small}{index(j + 1)}"
             least = math.sqrt(terms.of_units(i, i).sum() * terms.of_units(j, j).sum())
             add(f"{small}{both}{per}", self.flexibility_unit(i, j), terms.of_units(i, j), least)
         return found
 
-    def virtual_work(self, which: Sequence[int]) -> Table:
-        """The sums over axial forces, with everything that is multiplied, for some unknowns."""
+    def virtual_work(self, which: Sequence[int], last: int | None = None) -> Table:
+        """The sums over axial forces, with everything that is multiplied, for some unknowns; last: the sums of one alone."""
         forces, work = self.forces(which), self.solution.work
-        products = self._products(which, self._carrying, work.axial, work.bending, " N₀ n L/EA ΔL")
+        products = self._products(which, self._carrying, work.axial, work.bending, " N₀ n L/EA ΔL", last)
         return Table(forces.corner, forces.names, [*forces.columns, *products])
 
-    def bending(self, which: Sequence[int]) -> Table:
+    def bending(self, which: Sequence[int], last: int | None = None) -> Table:
         """The same over bending moments, at the starts and ends of the rods; q L²/8 by which M₀ bulges between."""
         solution, rods, work = self.solution, self.model.rods, self.solution.work
         rows = np.flatnonzero((work.bending.unit != 0.0).any(axis=(0, 2)))
@@ -143,7 +144,7 @@ class Tables:
         for i in which:
             unit, moment = "" if solution.unknowns[i].is_moment else "m", work.bending.unit[i]
             columns += _at_ends(f"m{index(i + 1)}", unit, moment, rows, largest(moment))
-        columns += self._products(which, rows, work.bending, work.axial, "∫ M₀ m /EI κ")
+        columns += self._products(which, rows, work.bending, work.axial, "∫ M₀ m /EI κ", last)
         return Table(tr("rod"), self._names(rows), columns)
 
     def settlements(self) -> Table | None:
@@ -160,8 +161,13 @@ class Tables:
         return Table(tr("support"), self._supports(settled), columns)
 
     def sums(self, i: int) -> tuple[str, ...]:
-        """What δᵢ₀ and δᵢᵢ of a frame are sums of."""
-        return (f"{self._sum_of_gap(i)},  {self._sum_of_units(i, i)}",) if self.bends else ()
+        """What δᵢ₀, δᵢᵢ and δⱼᵢ, j < i, of a frame are sums of."""
+        if not self.bends:
+            return ()
+        return (
+            f"{self._sum_of_gap(i)},  {self._sum_of_units(i, i)}",
+            *(self._sum_of_units(j, i) for j in range(i)),
+        )
 
     def all_sums(self) -> list[str]:
         """What every δ of a frame is a sum of, without units: bending, axial forces, and what acts without force."""

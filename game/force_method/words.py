@@ -41,8 +41,11 @@ def message(guide: Guide) -> str:
     if guide.part == 2:
         if guide.axis_wanted is not None:
             return tr("Which direction of the support?")
+        if guide.count.degree > 1:
+            place = {"number": len(guide.released) + 1, "degree": guide.count.degree}
+            return tr("Choose a rod or a support to release: number {number} of {degree}", **place)
         return tr("Choose a rod or a support to release")
-    names, last = listed([unknown.name for unknown in guide.released]), index(len(guide.released))
+    names, last = listed([unknown.name for unknown in guide.released]), index(guide.acting + 1)
     if guide.in_thesis:
         return {
             3: tr("Primary structure: {names} is released", names=names)
@@ -50,7 +53,7 @@ def message(guide: Guide) -> str:
             else tr("Primary structure: {names} are released", names=names),
             4: tr("How far the released place moved"),
             5: tr("Primary structure under a pair of unit forces alone")
-            if guide.released[-1].of_bar
+            if guide.released[guide.acting].of_bar
             else tr("Primary structure under a unit force alone"),
             6: tr("How far the unit force moves it"),
             7: tr("Set 2 + set 3 = set 1"),
@@ -77,7 +80,8 @@ def hint(guide: Guide) -> str:
             steps.append(tr("M moment"))
         steps.append(tr("Esc back to pause"))
     elif guide.part == 2:
-        steps = [tr("click a rod or a support in set 1"), tr("Esc back to pause")]
+        known = [tr("K go on with these")] if guide.released else []
+        steps = [tr("click a rod or a support in set 1"), *known, tr("Esc back to pause")]
     elif guide.part == PARTS:
         another = [tr("N release another")] if guide.can_release_another else []
         steps = [tr("K finish"), tr("P report as PDF"), *another, *steps]
@@ -113,7 +117,7 @@ def captions(guide: Guide) -> list[Caption]:
 def _of_textbook(guide: Guide, solution: Solution) -> tuple[Caption, ...]:
     """What loads set 3, and the gaps in each set."""
     count, tables = len(guide.released), guide.tables
-    third = f"X{index(count)} = 1"
+    third = f"X{index(guide.acting + 1)} = 1"
     if guide.part == PARTS:
         third = tr("the unknowns below") if count > 1 else f"X₁ = {amount(solution, 0)}"
     gaps = [
@@ -121,15 +125,16 @@ def _of_textbook(guide: Guide, solution: Solution) -> tuple[Caption, ...]:
         for i, gap in enumerate(solution.gap.tolist())
     ]
     flexibilities = [
-        f"δ{index(i + 1, count)} = {written.number(tables.factor * value)} {tables.flexibility_unit(i, count - 1)}"
-        for i, value in enumerate(solution.flexibility[:, -1].tolist())
+        f"δ{index(i + 1, guide.acting + 1)} = {written.number(tables.factor * value)}"
+        f" {tables.flexibility_unit(i, guide.acting)}"
+        for i, value in enumerate(solution.flexibility[:, guide.acting].tolist())
     ]
     return (third,), (), tuple(gaps), tuple(flexibilities)
 
 
 def _of_thesis(guide: Guide, solution: Solution) -> tuple[Caption, ...]:
     """What loads set 3, and the displacement of every unknown: Δ, the change of distance of a rod, or u, of a support."""
-    last, several = guide.released[-1], len(guide.released) > 1
+    last, several = guide.released[guide.acting], len(guide.released) > 1
     third = tr("a unit force at {name}", name=last.name)
     if last.of_bar:
         third = tr("a pair of unit forces at {name}", name=last.name)
@@ -143,7 +148,7 @@ def _of_thesis(guide: Guide, solution: Solution) -> tuple[Caption, ...]:
             for unknown, value in zip(guide.released, values, strict=True)
         )
 
-    deltas = solution.delta_real, solution.delta_base, solution.delta_unit[:, -1]
+    deltas = solution.delta_real, solution.delta_base, solution.delta_unit[:, guide.acting]
     return (third,), *map(each, ("", "₀", "₁"), (delta.tolist() for delta in deltas), ("", "", "/kN"))
 
 
@@ -165,7 +170,7 @@ def working(guide: Guide) -> tuple[str, ...]:
             degree_of(guide.count.degree),
             tr("Yielding is switched off: superposition needs linear behaviour."),
         )
-    if solution is None or guide.part < 3:
+    if solution is None:
         return ()
     if guide.part < PARTS:
         return () if guide.in_thesis else explained(guide)
@@ -191,18 +196,24 @@ def degree_of(degree: int) -> str:
 
 
 def explained(guide: Guide) -> tuple[str, ...]:
-    """What the present part of the textbook's solution is about, with its formulas (parts 3 to 6)."""
+    """What the present part of the textbook's solution is about, with its formulas (parts 2 to 6)."""
     assert guide.solution is not None
-    number = len(guide.released)
-    if guide.part == 3:
+    number, tables = guide.acting + 1, guide.tables
+    if guide.part in (2, 3):
         return tuple(
             f"X{index(i + 1)}: {meaning(unknown)}" for i, unknown in enumerate(guide.solution.unknowns)
         )
     if guide.part == 4:
-        return (gap_of(guide.solution.unknowns[-1], index(number, 0), index(number)),)
+        return tuple(
+            gap_of(unknown, index(i + 1, 0), index(i + 1)) for i, unknown in enumerate(guide.solution.unknowns)
+        )
     if guide.part == 5:
         return (tr("The forces that {unknown} = 1 causes are the factors n.", unknown=f"X{index(number)}"),)
-    return (",  ".join(formulas(guide.tables.bends, index(number))), *guide.tables.sums(number - 1))
+    mixed = [
+        f"δ{index(j, number)} = {sums(tables.bends, f'm{index(j)} m{index(number)}', f'n{index(j)} n{index(number)}')}"
+        for j in range(1, number)
+    ]
+    return (",  ".join([*formulas(tables.bends, index(number)), *mixed]), *tables.sums(number - 1))
 
 
 def formulas(bends: bool, i: str, *, pulls: bool = True, more: Sequence[str] = ()) -> tuple[str, str]:
@@ -308,9 +319,12 @@ def table(guide: Guide) -> Sequence[tuple[str, ...]]:
     """Virtual work, rod by rod (part 6), and superposition (part 7)."""
     if guide.solution is None or guide.part < 6:
         return ()
-    tables, last = guide.tables, [len(guide.released) - 1]
+    from pinjoint.force_method.tables import PRODUCTS  # it imports scipy
+
+    tables, last = guide.tables, guide.acting
     if guide.in_thesis:
         return tables.sets() if guide.part == PARTS else ()
     if guide.part == 6:
-        return tables.bending(last) if tables.bends else tables.virtual_work(last)
+        which = range(last + 1) if last < PRODUCTS else [last]
+        return tables.bending(which, last) if tables.bends else tables.virtual_work(which, last)
     return tables.moments() if tables.bends and guide.quantity != AXIAL else tables.axial_forces()

@@ -18,7 +18,7 @@ from pinjoint.documents.models import replace
 from pinjoint.mods import App
 from pinjoint.paths import TIME, Quantity, quantity
 from pinjoint.systems.base import Phase, System
-from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit import saving
 
 if TYPE_CHECKING:  # a command needs no editor
     from pinjoint.editor.context import Context
@@ -191,16 +191,10 @@ def zoom(factor: float, session: Context) -> None:
 def save(session: Context, pixel: Vector) -> None:
     """Write every plot as CSV and PNG into the working folder."""
     paths = [Path.cwd() / f"pinjoint-plot-{number}.csv" for number, _ in enumerate(probes_of(session).all, 1)]
-    try:
+    with saving():
         for probe, path in zip(probes_of(session).all, paths, strict=True):
             write_csv(probe, path)
             write_png(probe, path.with_suffix(".png"), session.view.theme)
-    except OSError as error:
-        raise Refusal(
-            "No plot was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
-            file=error.filename,
-            reason=error.strerror,
-        ) from None
     names = listed([path.stem for path in paths])
     session.notice = (
         tr("Saved as CSV and PNG: {names}", names=names)

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.bent import is_frame
 from pinjoint.components.field import SAVED, Field
 from pinjoint.components.form import NAME, NUMBER, TEXT, WORD, Box, Form
 from pinjoint.components.handle import Handle
@@ -104,8 +103,6 @@ def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
         if not selected or kind in kinds:
             fields = model.tables[Settings.table].fields_in(*SAVED)
             chosen = tuple(f for f in fields if (f.name in _OF_RODS) is of_rods and f.dtype is not object)
-            if not is_frame(model):
-                chosen = tuple(field for field in chosen if field is not Settings.original_diagrams)
             found.append(Subject(section, (model.settings,), np.zeros(1, dtype=np.intp), chosen))
     return found
 

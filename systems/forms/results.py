@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import written
+from pinjoint.components.bent import farthest
 from pinjoint.components.field import CM, Field, Role
 from pinjoint.components.form import Reading
 from pinjoint.components.handle import Handle
@@ -33,6 +34,7 @@ def results(model: Model, selected: Sequence[Handle], *, known: bool = True) -> 
     rows, columns = model.rows_of(selected), _Columns(model, known)
     if len(rows["rods"]):
         yield from _of_rods(columns, rows["rods"])
+    yield from _largest_displacement(model, rows["rods"], rows["particles"])
     if len(rows["particles"]):
         yield from _of_particles(columns, rows["particles"])
 
@@ -180,13 +182,27 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading
         speed = np.hypot(*particles.velocity.T)
         yield _result(tr("speed"), _number(speed[row], speed, "m/s"), Particle.velocity)
         return
-    distance = np.hypot(*moved.T)
-    most = rows[np.argmax(distance[rows])]
-    text = f"{_number(distance[most], distance, CM[0])} ({particles.column('name')[most]})"
-    yield _result(tr("largest displacement"), text, Particle.displacement)
     if particles.fixed[rows].any():
         total = reactions[rows].sum(axis=0)
         yield _vector(tr("sum of reactions"), total, reactions, "kN", Particle.reaction)
+
+
+def _largest_displacement(
+    model: Model, rods: NDArray[np.intp], particles: NDArray[np.intp]
+) -> Iterator[Reading]:
+    """The largest displacement of several particles and of points along rods that bend, and whose it is."""
+    rods = rods[model.rods.bending_stiffness[rods] > 0.0]
+    if not len(rods) and len(particles) < 2:
+        return
+    moved = CM[1] * np.hypot(*model.particles.displacement.T)
+    joints = np.concatenate([particles, model.rods.between[rods].ravel()]).astype(np.intp)
+    most = joints[np.argmax(moved[joints])]
+    largest, whose = moved[most], model.particles.names[most]
+    inside = CM[1] * farthest(model, rods)[0]
+    if len(rods) and inside.max() > largest * (1.0 + written.ROUNDING):
+        largest, whose = inside.max(), model.rods.names[rods[np.argmax(inside)]]
+    text = f"{_number(largest, np.append(moved, inside), CM[0])} ({whose})"
+    yield _result(tr("largest displacement"), text, Particle.displacement)
 
 
 # --- loads, and elements of mods -----------------------------------------------------------------------

@@ -20,6 +20,7 @@ EVERY = (*LIVE, *FORMS, FORCE_METHOD)
 IN_LESSONS = (*LIVE, PROPERTIES, FORCE_METHOD)
 IN_PICTURES = (*LIVE, FORCE_METHOD)
 MENU = "menu"  # no scene: the keys while a menu is open
+TABLE = "table"  # no scene: the keys while the pointer is over a table of results
 
 TEXT = "text "  # prefix of the "key" of typed text, such as "text a"
 FILES = "files "  # prefix of the "key" of files dropped on the window: their paths, a line each

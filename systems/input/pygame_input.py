@@ -10,7 +10,7 @@ import pygame
 
 from pinjoint.components.field import Vector
 from pinjoint.systems.base import Phase, System
-from pinjoint.systems.input.actions import ACTIONS, FILES, MENU, TEXT
+from pinjoint.systems.input.actions import ACTIONS, FILES, MENU, TABLE, TEXT
 
 CLICK_REACH = 4.0  # points that the pointer may move while a button is down; more: a drag
 DOUBLE_CLICK = 0.4  # s between two clicks that count as a double click
@@ -124,8 +124,9 @@ class PygameInput(System):
     def _press(self, event: pygame.event.Event, frame: Any) -> None:
         key, repeated = _key_name(event), event.key in self._held
         self._held.add(event.key)
-        scene = frame.session.scene if frame.session.view.menu is None else MENU
-        found = ACTIONS.at(scene, key)
+        view, scene = frame.session.view, frame.session.scene
+        over = MENU if view.menu is not None else TABLE if view.table_place.contains(view.pixel) else scene
+        found = ACTIONS.at(over, key) or ACTIONS.at(scene, key)
         if key and (not repeated or (found is not None and found[0].repeats)):
             frame.pressed.append((key, frame.session.view.pixel))
 

@@ -14,7 +14,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.toolbar import Toolbar
-from pinjoint.components.view import Hit, View
+from pinjoint.components.view import Hit, Listing, View
 from pinjoint.systems.broad_phase import distance_to_segments
 from pinjoint.systems.render.labels.placing import Placed, place_labels
 from pinjoint.systems.render.marks import Fills, Mark, Owners, Picture, Points, Stamps, Strokes
@@ -23,8 +23,9 @@ from pinjoint.systems.render.model.cuts import draw_cuts
 from pinjoint.systems.render.model.diagrams import draw_diagrams
 from pinjoint.systems.render.model.free_bodies import draw_free_bodies
 from pinjoint.systems.render.model.members import draw_distributed_forces, draw_hinges, draw_moments
-from pinjoint.systems.render.model.sheet import DIRECTIONS, MANY, Sheet, Stage, measure
+from pinjoint.systems.render.model.sheet import DIRECTIONS, MANY, Sheet, Shown, Stage, measure
 from pinjoint.systems.render.model.structure import (
+    draw_deflected,
     draw_ghost,
     draw_grid,
     draw_halos,
@@ -41,7 +42,9 @@ from pinjoint.systems.render.ui.controls import put_controls
 from pinjoint.systems.render.ui.form import compose_form
 from pinjoint.systems.render.ui.layout import Paper
 from pinjoint.systems.render.ui.lesson_card import compose_lesson
+from pinjoint.systems.render.ui.listing import compose_listing
 from pinjoint.systems.render.ui.overlays import (
+    LIST,
     draw_notice,
     draw_overlays,
     draw_references,
@@ -62,7 +65,7 @@ _Lines = tuple[Points, Points, float, Owners]  # from, to, reach in pixels besid
 def compose_all(
     stages: Sequence[Stage],
     theme: Theme,
-    placed: Callable[[Model | Form | Toolbar, View], Placed] | None = None,
+    placed: Callable[[Shown, View], Placed] | None = None,
 ) -> list[Picture]:
     """The pictures of all stages, in their order; placed: where labels of a stage were.
 
@@ -77,13 +80,13 @@ def compose_all(
 
 
 def compose(
-    model: Model | Form | Toolbar,
+    model: Shown,
     view: View,
     theme: Theme,
     placed: Placed | None = None,
     others: Sequence[Picture] = (),
 ) -> Picture:
-    """The model (or form, or toolbar) as seen in a view, as marks in pixels. Reads it, changes nothing.
+    """The model (or form, or toolbar, or table) as seen in a view, as marks in pixels. Reads it, changes nothing.
 
     Forces are read only where a diagram shows them, yielding only where a rod has a strength, and neither
     before they are known. placed: where labels were in the last picture of this model and view, updated to
@@ -94,6 +97,8 @@ def compose(
         return compose_form(model, view, theme)
     if isinstance(model, Toolbar):
         return compose_toolbar(model, view, theme, others)
+    if isinstance(model, Listing):
+        return compose_listing(model, view, theme)
     if view.card is not None:
         return compose_lesson(view.card, view, theme)
     sheet = measure(model, view, theme, placed)
@@ -104,12 +109,14 @@ def compose(
     return Picture(sheet.viewport, theme.background, draw_page(sheet))
 
 
-def hits_at(model: Model | Form | Toolbar, view: View, theme: Theme, pixel: Vector) -> list[Hit]:
+def hits_at(model: Shown, view: View, theme: Theme, pixel: Vector) -> list[Hit]:
     """Where a press at a pixel does something in the picture of a stage, the topmost last.
 
     The toolbar is composed only where it or what opens over it may lie, a model only where panels stand beside it.
     """
     if isinstance(model, Toolbar) and not (view.strip.contains(pixel) or view.help or view.menu):
+        return []
+    if isinstance(model, Listing) and not view.table_place.contains(pixel):
         return []
     paper, panels = Paper(view.pixel_ratio), view.readouts and view.legend and view.panels.contains(pixel)
     if not isinstance(model, Model) or view.card is not None or panels:
@@ -123,6 +130,7 @@ def _draw_structure(sheet: Sheet) -> None:
     """Rods, supports and particles, with diagrams, loads and velocities."""
     draw_diagrams(sheet, taken_by_heading(sheet))
     draw_ghost(sheet)
+    draw_deflected(sheet)
     draw_halos(sheet)
     sides = support_sides(sheet)
     draw_supports(sheet, sides)
@@ -170,9 +178,12 @@ def _composed(sheet: Sheet) -> Picture:
     scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
     put_controls(paper, model, sheet.view, theme)
     preview = draw_preview(sheet)
-    labels, referred = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
+    listed = sheet.placed.get(LIST, -1)
+    labels, referred = place_labels(
+        sheet.labels, sheet.occupancy, sheet.unit, sheet.placed, steady=sheet.view.steady
+    )
     over = [
-        *draw_references(sheet, referred),
+        *draw_references(sheet, referred, listed),
         *draw_scale(sheet, scale),
         *draw_flashes(sheet),
         *preview,

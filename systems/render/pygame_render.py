@@ -10,12 +10,12 @@ import pygame
 from pinjoint.components.form import Form
 from pinjoint.components.language import language
 from pinjoint.components.model import Model
-from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import View
 from pinjoint.systems.base import Phase, System
 from pinjoint.systems.render.backends.pygame_canvas import Canvas
 from pinjoint.systems.render.backends.raster import Raster
 from pinjoint.systems.render.labels.placing import Placed
+from pinjoint.systems.render.model.sheet import Shown, Stage
 from pinjoint.systems.render.picture import compose_all
 from pinjoint.systems.render.theme import load_theme
 
@@ -58,16 +58,15 @@ def draw_unseen(frame: Any, size: tuple[int, int]) -> None:
     PygameRender(pygame.Surface(size, depth=32)).process(frame)
 
 
-def _looked_at(shown: Model | Form | Toolbar, view: View) -> str:
+def _looked_at(shown: Shown, view: View) -> str:
     """The model and the view of a stage: while they are the same, labels keep their places."""
     return f"{shown.context if isinstance(shown, Model) else ''} {view.camera}"
 
 
-def _looks(stages: Sequence[tuple[Model | Form | Toolbar, View]]) -> tuple[object, ...]:
+def _looks(stages: Sequence[Stage]) -> tuple[object, ...]:
     """All that the pictures of some stages follow from."""
     shown = (
-        s.looks if isinstance(s, Form) else (s.context, s.revision)
+        s.looks if isinstance(s, Form) else (s.context, s.revision) if isinstance(s, Model) else s
         for s, _ in stages
-        if not isinstance(s, Toolbar)
     )
     return language(), tuple(view.looks for _, view in stages), tuple(shown)

@@ -22,7 +22,7 @@ class Theme:
     ink, hollow: rods, rims and supports; the inside of particles and supports.
     ghost, grid: the undeformed structure; lines to draw along.
     selected, hover: halos of what a person selected, and of what a click would hit; neutral, so that they hide no force.
-    sketch: what is about to be drawn; mechanisms and modes.
+    sketch: what is about to be drawn; mechanisms and modes; the deflected shape beside the undeformed.
     tension, compression, zero, yielding: rods by their axial force.
     load, reaction: what acts on particles, and what their supports answer.
     scale_low, scale_middle, scale_high: the share of a strength that a rod bears: 0, 50 and 100 %.

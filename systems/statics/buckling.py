@@ -92,7 +92,7 @@ class Buckling:
         fields = structure.fields(vectors)
         modes = np.array([upright(normalised(field)) for field in fields]).reshape(fields.shape)
         leading = np.array([int(_work(structure, field, -live).argmax()) for field in fields], dtype=np.intp)
-        member = _members(model)
+        member = members(model)
         taking = np.zeros(len(live), dtype=bool)
         if len(fields):
             work = np.bincount(member, _work(structure, fields[0], -live))
@@ -233,7 +233,7 @@ def _work(structure: Structure, mode: Array, compression: Array) -> Array:
     return work
 
 
-def _members(model: Model) -> Rows:
+def members(model: Model) -> Rows:
     """The number of the member of each rod, (rods,): rods in a line, alike and rigidly joined where nothing else is."""
     rods, particles = model.rods, model.particles
     ends, rigid = rods.between.astype(np.intp), rods.turning_shares > 0.0

@@ -207,7 +207,8 @@ class Structure:
         return index[sparse_order(self.ends, self.width, len(self.position), index)]
 
     @cached_property
-    def _assembly(self) -> Assembly:
+    def assembly(self) -> Assembly:
+        """Where the entries of rods' matrices go."""
         return Assembly(self.ends, self.unknown.shape, self.index, self.sparse and self.size > DENSE)
 
     @property
@@ -554,7 +555,7 @@ class Structure:
                 response.bent, along, response.axial_force, a, response.length, geometric
             ).reshape(-1, 2, 3, 2, 3)
             parts[:, :, :2, :, :2] += bars
-        return self._assembly.matrix(parts.ravel())
+        return self.assembly.matrix(parts.ravel())
 
     @property
     def deformations(self) -> int:

@@ -1,6 +1,8 @@
-"""How soon one sees what one did in a model of 10 000 rods: from the action to the finished picture."""
+"""How soon one sees what one did in a model of 10 000 rods, from the action to the finished picture; and how many pictures
+a second one sees while one drags in statics."""
 
 import gc
+import math
 import os
 import time
 from collections.abc import Callable, Iterator
@@ -13,11 +15,13 @@ import pygame
 
 from pinjoint.app import SELDOM, App
 from pinjoint.components.field import Vector
+from pinjoint.components.model import Model
 from pinjoint.documents import library
 from pinjoint.preparation import Preparation
-from tests.benchmarks.models import lattice
+from tests.benchmarks.models import lattice, storeys
 
 FRAME = 1.0 / 60.0
+WINDOW = 1280, 800  # in which one drags
 MOST = 50.0  # ms within which one wants to see what one did
 ANNOUNCED = "…"  # ends the names of what is worked on after a picture that says so
 
@@ -25,12 +29,12 @@ Row = dict[str, object]
 
 
 class Hand:
-    """Somebody at a window without a display, with a lattice of rods before them."""
+    """Somebody at a window without a display, with a model before them."""
 
-    def __init__(self, rods: int) -> None:
+    def __init__(self, model: Model) -> None:
         self._thresholds = gc.get_threshold()
         gc.set_threshold(SELDOM)  # as App.run does
-        self.app = App(lattice(rods, damping=1.0), preparation=Preparation())
+        self.app = App(model, preparation=Preparation())
         self.session = self.app.session
         self._fresh = count(1)  # something else every time: a particle, a place
         while not self.session.simulation.programs.ready:  # nobody is that quick
@@ -221,7 +225,7 @@ def reactions(*, quick: bool) -> Iterator[Row]:
     What the picture before said that it is worked on need not be.
     """
     rods = 2_000 if quick else 10_000
-    with library.data_in(), closing(Hand(rods)) as hand:
+    with library.data_in(), closing(Hand(lattice(rods, damping=1.0))) as hand:
         hand.session.document.save_as(library.data_folder() / "lattice.json")
         for what, act, times in SESSION:
             hand.wait()
@@ -248,6 +252,55 @@ def _milliseconds(hand: Hand, act: Act) -> tuple[float, float]:
     return 1e3 * (time.perf_counter() - started), 1e3 * (time.process_time() - busy)
 
 
+def drags(*, quick: bool) -> Iterator[Row]:
+    """Frames that a window would show a second while one drags in statics, without the pauses between them.
+
+    solving_ms: the part of it that the solution takes. pale: how many showed no solution.
+    """
+    with library.data_in(), closing(Hand(storeys(6, 8))) as hand:
+        session, model = hand.session, hand.session.model
+        hand.app.size = WINDOW
+        particle, frames = session.particles[7 * 8 + 3], 60 if quick else 180
+        particle.force = (50.0, 0.0)
+        hand.frame()
+        for key in ("q", "home"):
+            hand.press(key)
+        session.select(particle)
+        hand.press("ctrl+l")
+        hand.wait()
+        hand.frame()
+        left, right, height = session.view.slider_places[-1].track
+        joint = hand.pixel(*session.particles[7 * 4 + 3].position)
+        for what, (x, y), far in (
+            ("a joint", joint, 60.0),
+            ("a slider", (0.5 * (left + right), height), 0.4 * (right - left)),
+        ):
+            hand.press("drag", (x, y))
+            taken, pale = [], 0
+            for number in range(frames):
+                place = (
+                    x + far * math.sin(0.1 * number),
+                    y + (0.5 * far * math.sin(0.03 * number) if what == "a joint" else 0.0),
+                )
+                taken.append(_milliseconds(hand, lambda hand, at=place: hand.press("drag to", at)))
+                pale += bool(session.view.provisional)
+            hand.press("drop", (x, y))
+            waited, busy = (sorted(column) for column in zip(*taken, strict=True))
+            started = time.process_time()
+            for _ in range(20):
+                session.document.statics.settled()
+            yield {
+                "dragged": what,
+                "rods": model.rods.count,
+                "frames_per_s": 1e3 / (sum(waited) / frames),
+                "median_ms": waited[frames // 2],
+                "longest_ms": waited[-1],
+                "processor_ms": busy[frames // 2],
+                "solving_ms": 50.0 * (time.process_time() - started),
+                "pale": pale,
+            }
+
+
 def report(*, quick: bool) -> dict[str, list[Row]]:
     """Everything this benchmark measures, by table."""
-    return {"reactions": list(reactions(quick=quick))}
+    return {"reactions": list(reactions(quick=quick)), "drags": list(drags(quick=quick))}

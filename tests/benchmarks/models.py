@@ -87,6 +87,26 @@ def mesh(rods: int, **columns: Any) -> Model:
     return _held_at_the_left(width, height, _across_and_up(width, height), columns)
 
 
+def storeys(bays: int, floors: int) -> Model:
+    """A steel frame, clamped below, with a distributed force on every beam: bays × floors beams and a column more each."""
+    model, columns = Model(), bays + 1
+    place = np.arange(columns * (floors + 1)).reshape(floors + 1, columns)
+    x, y = np.meshgrid(4.0 * np.arange(columns), 3.0 * np.arange(floors + 1))
+    foot = y.ravel() == 0.0
+    model.create(
+        Particle,
+        place.size,
+        position=np.column_stack([x.ravel(), y.ravel()]),
+        fixed=np.column_stack([foot, foot]),
+        fixed_rotation=foot,
+    )
+    up = np.column_stack([place[:-1].ravel(), place[1:].ravel()])
+    across = np.column_stack([place[1:, :-1].ravel(), place[1:, 1:].ravel()])
+    model.create(Rod, len(up), between=up, section="HEB 200")
+    model.create(Rod, len(across), between=across, section="IPE 300", distributed_force=(0.0, -20.0))
+    return model
+
+
 def _held_at_the_left(
     width: int, height: int, ends: np.ndarray, columns: dict[str, Any], at_random: bool = False
 ) -> Model:

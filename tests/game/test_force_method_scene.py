@@ -22,7 +22,7 @@ from pinjoint.systems.render.ui.overlays import MEANINGS, meanings_of
 from pinjoint.systems.render.ui.page import draw_page
 from pinjoint.systems.statics.theory import linear
 from tests.benchmarks.models import lattice
-from tests.reference.models import model
+from tests.reference.models import model, square
 
 
 def guide_of(session: Session) -> Guide:
@@ -95,7 +95,7 @@ def test_a_particle_constrained_in_both_directions_asks_which() -> None:
     session.click(*support.position)
     assert words.message(guide) == "Which direction of the support?"
     session.press("y")
-    assert guide.part == 3 or "mechanism" in guide.refusal
+    assert guide.released or "mechanism" in guide.refusal
 
 
 def test_a_rod_that_is_not_redundant_is_refused_and_the_method_goes_on() -> None:
@@ -154,14 +154,12 @@ def test_a_click_is_picked_where_it_is_seen_even_before_the_first_picture() -> N
 
 
 def released(session: Session, *names: str, part: int = PARTS) -> Guide:
-    """Go through all parts, or to one of them, for each of these unknowns."""
+    """Go through all parts, or to one of them, with these unknowns."""
     guide = asked(session)
-    for index, name in enumerate(names):
-        if index:
-            session.press("n")
+    for name in names:
         guide.pick(guide.sets[0].model.rods[name])
-        while guide.part < part:
-            session.press("k")
+    while guide.part < part:
+        session.press("k")
     return guide
 
 
@@ -198,7 +196,66 @@ def test_a_structure_that_is_a_mechanism_already_is_shown_as_one() -> None:
     assert session.scene == "pause"
 
 
-def test_it_is_repeated_for_a_further_unknown() -> None:
+def on_two_pins() -> dict[str, Any]:
+    """A square braced by both diagonals on two pins: g = 2."""
+    document = square()
+    document["particles"][0]["fixed"] = [True, True]
+    return document
+
+
+def test_all_unknowns_are_chosen_before_the_released_structure_is_shown() -> None:
+    session = Session.open(on_two_pins())
+    guide = asked(session)
+    assert words.message(guide) == "Choose a rod or a support to release: number 1 of 2"
+    guide.pick(guide.sets[0].model.rods["BD"])
+    assert (guide.part, len(guide.sets)) == (2, 1)
+    assert words.message(guide) == "Choose a rod or a support to release: number 2 of 2"
+    assert words.working(guide) == ("X₁: axial force of rod BD, positive in tension",)
+    guide.pick(guide.sets[0].model.rods["DA"])
+    assert guide.part == 3
+    assert not {"BD", "DA"} & set(guide.sets[1].model.rods.names)
+    session.press("k")
+    assert len(words.working(guide)) == 2  # δ₁₀ and δ₂₀
+    seen = []
+    while guide.part < PARTS:
+        session.press("k")
+        seen.append((guide.part, words.captions(guide)[2][1], guide.unknown.name if guide.unknown else ""))
+    assert seen == [
+        (5, "X₁ = 1", "BD"),
+        (6, "X₁ = 1", "BD"),
+        (5, "X₂ = 1", "DA"),
+        (6, "X₂ = 1", "DA"),
+        (7, "the unknowns below", "DA"),
+    ]
+
+
+def test_part_6_shows_the_products_of_unknowns() -> None:
+    session = Session.open("tower")
+    guide = released(session, "R0-R1", "R1-L2", part=6)
+    session.press("k")
+    session.press("k")
+    assert words.working(guide)[0].endswith("δ₁₂ = Σ n₁ n₂ L/EA")
+    table = words.table(guide)
+    mixed = next(column for column, title in enumerate(table[0]) if title.startswith("n₁n₂L/EA"))
+    assert guide.solution is not None
+    found = float(table[-1][mixed].replace("−", "-"))
+    assert found == pytest.approx(1e5 * guide.solution.flexibility[0, 1], rel=1e-3)  # 10⁻³ cm/kN
+
+
+def test_some_unknowns_may_be_released_and_then_further_ones() -> None:
+    session = Session.open(on_two_pins())
+    guide = released(session, "BD")
+    assert len(guide.released) == 1
+    session.press("n")
+    session.press("k")
+    assert words.message(guide) == "First click the rod or the support to release, in set 1."
+    guide.pick(guide.sets[0].model.rods["DA"])
+    session.press("k")
+    session.press("k")
+    assert (guide.part, words.captions(guide)[2][1]) == (5, "X₂ = 1")
+
+
+def test_it_is_done_for_two_unknowns() -> None:
     session = Session.open("tower")
     guide = released(session, "R0-R1", "R1-L2")
     assert [unknown.name for unknown in guide.released] == ["R0-R1", "R1-L2"]
@@ -353,6 +410,7 @@ def test_a_large_structure_is_worked_on_after_a_picture_that_says_so() -> None:
     session.click(0.0, 6.0)
     session.press("x")
     assert "Releasing it" in "".join(said(session))
+    session.press("k")
     assert guide_of(session).part == 3
     session.press("k")
     session.press("escape")
@@ -497,6 +555,7 @@ def test_a_click_near_an_end_of_a_rod_that_bends_releases_the_moment_there(share
     session.click(*((1.0 - share) * start + share * end).tolist())
     assert guide.unknown is not None
     assert guide.unknown.name == name
+    session.press("k")
     assert guide.sets[1].model.rods["BC"].hinged == (name == "BC.start", name == "BC.end")
 
 
@@ -505,7 +564,7 @@ def test_sets_of_a_frame_show_the_forces_of_first_order_theory_and_add_up() -> N
     guide = asked(session)
     session.click(*session.model.particles["D"].position)
     session.press("x")
-    for _ in range(4):
+    for _ in range(5):
         session.press("k")
     moments = [one.model.rods.bending_moment for one in guide.sets]
     theory = linear(session.model).diagrams["bending_moment"]

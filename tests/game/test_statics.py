@@ -10,6 +10,9 @@ from pinjoint.documents.document import document
 from pinjoint.documents.models import load
 from pinjoint.session import Session
 from pinjoint.systems.base import Phase
+from pinjoint.systems.render.labels.placing import Placed
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import Start
 from tests.reference import bits
@@ -109,6 +112,48 @@ def test_edits_undo_and_redo_are_followed() -> None:
     session.divide("BC", 2)
     assert_is_solution(session, "first-order")
     assert session.particles[-1].position[1] == 4.0  # on the undeformed axis, not where it is drawn
+
+
+def test_what_a_drag_shows_is_the_solution_of_each_frame() -> None:
+    """All values of a portal, where they were a frame before; let go, all is placed anew."""
+    session, placed = shown("portal"), Placed()
+    session.resize(1280, 800)
+
+    def texts() -> list[str]:
+        session.frame(1.0 / 60.0)
+        return compose(session.model, session.view, load_theme("light"), placed).texts
+
+    before = texts()
+    x, y = session.point(*session.particles["B"].position)
+    session.press("drag", (x, y))
+    for number in range(1, 8):
+        session.press("drag to", (x + 9.0 * number, y - 5.0 * number))
+        seen, fresh = texts(), shown(document(session.model))
+        fresh.resize(1280, 800)
+        fresh.view.camera = session.view.camera
+        fresh.frame(0.0)
+        values = {key for key in placed if key[0] == "rods.M"}
+        anew: Placed = {}
+        told = compose(fresh.model, fresh.view, load_theme("light"), anew).texts
+        assert values == {key for key in anew if key[0] == "rods.M"}
+        moments = [text for text in told if text.endswith("kN·m")]
+        assert sorted(moments) == sorted(text for text in seen if text.endswith("kN·m")), number
+        assert seen != before
+    session.press("drop")
+    assert not session.frame(0.0).session.view.steady
+
+
+def test_in_a_window_theories_are_compared_once_the_hand_rests() -> None:
+    session = shown("portal")
+    statics, frames = session.document.statics, 1.0 / 60.0
+    said = statics.second_order()
+    assert said.startswith("second order")
+    session.particles["B"].force = (35.0, -20.0)
+    assert [statics.second_order(frames) for _ in range(10)] == [""] * 10
+    other = [statics.second_order(frames) for _ in range(10)][-1]
+    assert other.startswith("second order")
+    assert other != said
+    assert statics.second_order() == other
 
 
 def test_a_run_is_not_changed_by_a_look_at_statics() -> None:

@@ -229,6 +229,16 @@ def _pointed(window: Window) -> Session:
     return session
 
 
+def _table(window: Window) -> Session:
+    """The results of a frame in statics, the largest moments first, and a rod that was chosen."""
+    session = pressed(window, "q", "n", source="two_storey_frame")
+    session.lister.press(("head", 7))
+    session.lister.press(("head", 7))
+    session.act("fit")
+    session.select(session.rods["CD"])
+    return session
+
+
 def _moments(window: Window) -> Session:
     """A portal at rest with its bending moments."""
     session = opened(window, portal_at_rest())
@@ -271,7 +281,9 @@ SCENES: dict[str, Scene] = {
     "notice": _notice,
     "free-bodies": _free_bodies,
     "pointed": _pointed,
+    "table": _table,
     "frame-moments": _moments,
+    "statics": lambda window: pressed(window, "q", source="portal"),
     "frame-shears": _shears,
     "frame-free-bodies": _members_apart,
     "properties": _properties,

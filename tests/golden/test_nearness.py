@@ -13,7 +13,7 @@ from pinjoint.components.rod import bends
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.written import DIGITS, given, number
 from pinjoint.documents import models
-from pinjoint.systems.render.labels.placing import LEADER_OPACITY
+from pinjoint.systems.render.labels.placing import LEADER_OPACITY, half_size
 from pinjoint.systems.render.marks import Panel, Picture, Points, Strokes, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import faded, load_theme
@@ -89,18 +89,14 @@ def misplaced(picture: Picture, model: Model) -> Iterator[str]:
 
 
 def leader(text: Text, picture: Picture) -> Points | None:
-    """The ends of the line from a value to what it belongs to, shape (2, 2); None where it stands beside that.
-
-    It comes before the value among the marks, with only the dot at its end and the backing between them.
-    """
-    left, top, right, bottom = text_box(text, text.size)
-    place = next(number for number, mark in enumerate(picture.marks) if mark is text)
-    for mark in picture.marks[max(place - 3, 0) : place]:
-        if isinstance(mark, Strokes) and mark.colour == faded(text.colour, LEADER_OPACITY):
-            (x, y), end = mark.start[0], mark.end[0]
-            off = max(left - x, x - right, top - y, y - bottom)
-            if off < 8.0 and mark.of is not None and (mark.of[0], int(mark.of[1][0])) == text.of:
-                return np.array([[x, y], end])
+    """The ends of the line from a value to what it belongs to, shape (2, 2); None where it stands beside that."""
+    for mark in picture.marks:
+        if isinstance(mark, Strokes) and mark.colour == faded(text.colour, LEADER_OPACITY) and mark.of:
+            wide, tall = half_size(text.text, text.size, text.weight, unit=mark.width)
+            for (x, y), end, row in zip(mark.start, mark.end, mark.of[1].tolist(), strict=True):
+                off = max(abs(x - text.x) - wide, abs(y - text.y) - tall)
+                if abs(off) < 1e-6 and (mark.of[0], row) == text.of:
+                    return np.array([[x, y], end])
     return None
 
 

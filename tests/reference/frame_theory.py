@@ -5,9 +5,11 @@ the program: neither its coordinates (elongation and slopes) nor its assembly. S
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from scipy.linalg import eigh
 
 Document = dict[str, Any]
 EXPANSION = 1.2e-5
@@ -154,3 +156,66 @@ def end_forces(of: Member, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     elif of.hinged:
         local[of.hinged] = (local[4] - local[1]) / of.length
     return of.stiffness @ local + of.fixed, local[[2, 5]]
+
+
+def natural_frequencies(document: Document, parts: int) -> np.ndarray:
+    """ω² (rad²/s²), ascending, of a frame whose rods that bend are divided so, with consistent masses.
+
+    A hinged end has a rotation of its own. Bars have halves of their masses at their ends, in place of which a mass may be
+    prescribed.
+    """
+    particles, rods = document["particles"], document["rods"]
+    row = {particle["name"]: i for i, particle in enumerate(particles)}
+    size = 3 * len(particles) + sum(3 * parts + 2 for _ in rods)
+    stiffness, mass, used = np.zeros((size, size)), np.zeros((size, size)), 3 * len(particles)
+    along: list[np.ndarray] = []
+    for rod in rods:
+        first, last = (row[name] for name in rod["between"])
+        span = np.subtract(particles[last]["position"], particles[first]["position"])
+        bends = rod.get("bending_stiffness", 0.0) > 0.0
+        count = parts if bends else 1
+        inner = [list(range(used + 3 * i, used + 3 * i + 3)) for i in range(count - 1)]
+        used += 3 * (count - 1)
+        chain = [list(range(3 * first, 3 * first + 3)), *inner, list(range(3 * last, 3 * last + 3))]
+        for end in (0, -1):
+            if bends and rod.get("hinged", (False, False))[end]:
+                chain[end][2], used = used, used + 1
+        for start, end in pairwise(chain):
+            of = member({k: v for k, v in rod.items() if k != "rest_length"}, [*start, *end], span / count)
+            matrix = of.turned.T @ of.stiffness @ of.turned
+            stiffness[np.ix_(of.places, of.places)] += matrix
+            weight = rod.get("density", 6.15) * of.length / 1000.0
+            if bends:
+                local = weight * consistent(of.length)
+                along.append(np.zeros((size, size)))
+                along[-1][np.ix_(of.places, of.places)] = of.turned.T @ local @ of.turned
+                mass += along[-1]
+            else:
+                for place in (*start[:2], *end[:2]):
+                    mass[place, place] += weight / 2.0
+    for name, weight in ((p["name"], p["mass"] / 1000.0) for p in particles if "mass" in p):
+        for place in (3 * row[name], 3 * row[name] + 1):
+            mass[place, place] = weight + sum(of[place, place] for of in along)
+    held = [[*p.get("fixed", (False, False)), p.get("fixed_rotation", False)] for p in particles]
+    free = np.pad(~np.array(held).ravel(), (0, size - 3 * len(particles)), constant_values=True) & (
+        np.diag(mass) > 0.0
+    )
+    found: np.ndarray = eigh(stiffness[np.ix_(free, free)], mass[np.ix_(free, free)], eigvals_only=True)
+    return found
+
+
+def consistent(length: float) -> np.ndarray:
+    """The mass matrix of a rod of mass 1 that moves as its cubic: integrals of products of Hermite's polynomials."""
+    points, weights = np.polynomial.legendre.leggauss(5)
+    x, weights = 0.5 * (points + 1.0), 0.5 * weights
+    zero = np.zeros_like(x)
+    along = np.stack([1.0 - x, zero, zero, x, zero, zero])
+    shapes = [
+        1 - 3 * x**2 + 2 * x**3,
+        x * (1 - x) ** 2 * length,
+        3 * x**2 - 2 * x**3,
+        -(x**2) * (1 - x) * length,
+    ]
+    across = np.stack([zero, shapes[0], shapes[1], zero, shapes[2], shapes[3]])
+    matrix: np.ndarray = (along * weights) @ along.T + (across * weights) @ across.T
+    return matrix

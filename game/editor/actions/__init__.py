@@ -12,6 +12,7 @@ from pinjoint.editor.actions import (  # noqa: F401
     menu,
     results,
     sliding,
+    table,
     time,
     view,
 )

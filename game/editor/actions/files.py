@@ -9,7 +9,7 @@ from pinjoint.components.settings import HUBS, STATICS
 from pinjoint.documents.models import ModelError
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.context import Context
-from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit import Refusal, saving
 from pinjoint.systems.input.actions import ACTIONS, actions_of
 
 action = actions_of("Files")
@@ -61,13 +61,8 @@ def _sheet(context: Context, pixel: Vector) -> None:
     from pinjoint.sheet import NoSheet, sheet  # it imports reportlab
 
     try:
-        path = context.window.save("pinjoint-sheet.pdf", sheet(context.model))
+        with saving():
+            path = context.window.save("pinjoint-sheet.pdf", sheet(context.model))
     except NoSheet as error:
         raise Refusal(str(error)) from None
-    except OSError as error:
-        raise Refusal(
-            "No sheet was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
-            file=error.filename,
-            reason=error.strerror,
-        ) from None
     context.notice = tr("Sheet saved: {file}", file=path)

@@ -21,7 +21,7 @@ from pinjoint.editor.actions.view import toggle
 from pinjoint.editor.context import Context
 from pinjoint.editor.sliders import add_slider
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.input.actions import SIMULATION, actions_of
+from pinjoint.systems.input.actions import SIMULATION, TABLE, actions_of
 from pinjoint.systems.render.model.diagrams import NAMES
 
 action = actions_of("Results", while_drawing=True)
@@ -114,6 +114,19 @@ def _next_theory(context: Context, pixel: Vector) -> None:
     )
 
 
+@action(
+    "toggle undeformed",
+    "y",
+    "shape: undeformed or deformed",
+    (STATICS,),
+    pressed=attrgetter("model.settings.original_diagrams"),
+    while_drawing=False,
+)
+def _toggle_undeformed(context: Context, pixel: Vector) -> None:
+    """The structure with its diagrams in its undeformed shape, or deformed."""
+    context.settings.original_diagrams = not context.settings.original_diagrams
+
+
 action("toggle free bodies", "x", "show or hide free-body diagrams", pressed=attrgetter("view.free_bodies"))(
     toggle("free_bodies")
 )
@@ -139,6 +152,7 @@ for _panel, _key, _title in (
     ("theory", "m", marked("show or hide comparison with theory")),
     ("energy", "j", marked("show or hide energies")),
     ("events", "ctrl+h", marked("show or hide the list of events")),
+    (TABLE, "n", marked("show or hide the table of results")),
 ):
     action(
         f"toggle {_panel}", _key, _title, pressed=lambda context, panel=_panel: panel in context.view.wanted

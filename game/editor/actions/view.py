@@ -8,7 +8,7 @@ from operator import attrgetter
 from pinjoint.components.field import Vector
 from pinjoint.components.language import LANGUAGES, language, speak, tr
 from pinjoint.editor.context import Context
-from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit import saving
 from pinjoint.systems.input.actions import ACTIONS, EVERY, IN_PICTURES, Perform, actions_of
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.help import help_pages
@@ -101,14 +101,8 @@ def _save_picture(suffix: str, context: Context, pixel: Vector) -> None:
     """Save a picture of the model in a format."""
     if context.window is None:
         return
-    try:
+    with saving():
         context.notice = tr("Picture saved: {file}", file=context.window.screenshot(suffix))
-    except OSError as error:
-        raise Refusal(
-            "No picture was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
-            file=error.filename,
-            reason=error.strerror,
-        ) from None
 
 
 action("screenshot", "f12", "save a picture")(partial(_save_picture, ".png"))

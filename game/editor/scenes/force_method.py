@@ -36,7 +36,7 @@ LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; be
 HIGH = 340.0  # points of a set in which a slider has room below supports and reactions
 MOVED = 0.08  # of the size of a structure: about what drawn displacements add to it
 LEAST_EXPLAINED = 300.0  # points of a window; lower ones have no legend
-_NOTHING = (-1, False, "")  # no part is shown yet
+_NOTHING = (-1, False, "", 0, 0)  # no part is shown yet
 CAPTION, SCALE, MARGIN = 66.0, 48.0, 40.0  # points above, below (its slider), at most about a structure
 
 
@@ -193,7 +193,7 @@ class ForceMethod(Scene):
         guide = self.shown_guide
         if guide is None:
             return Page()
-        shown = (guide.part, guide.in_thesis, guide.quantity)
+        shown = (guide.part, guide.in_thesis, guide.quantity, len(guide.released), guide.acting)
         if shown != self._page_of:
             self._page = Page(words.working(guide), words.table(guide))
             self._page_of, self._first = shown, 0

@@ -176,13 +176,18 @@ class Properties(FormScene):
         return replace(self._camera)
 
     def click_beside(self, context: Context, pixel: Vector) -> None:
-        """A click on another element applies these boxes and shows those of that element."""
+        """A click on another element shows its boxes."""
         if not self.typing.accept() or self.viewport(context).contains(pixel):
             return
         hit = pick(*self.focus(context), pixel)
         if hit is not None and [hit] != context.selected:
+            self.turn_to(context, hit)
+
+    def turn_to(self, context: Context, handle: Handle) -> None:
+        """Apply these boxes and show those of another element."""
+        if self.typing.accept():
             self._apply(context)
-            context.select(hit)
+            super().turn_to(context, handle)
             self.form = self.make_form(context)
 
 

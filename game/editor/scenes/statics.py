@@ -28,7 +28,9 @@ class Statics(Scene):
     def hint(self, context: Context) -> str:
         if context.model.particles.count == 0:
             return tr("click a tool, then the canvas     right click menu     F1 help")
-        return tr("click select     I diagrams N, M, V     Z theory     Space run     Q pause     F1 help")
+        return tr(
+            "click select     I diagrams N, M, V     N table     Z theory     Space run     Q pause     F1 help"
+        )
 
 
 class Solve(System):

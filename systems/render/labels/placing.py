@@ -1,26 +1,33 @@
-"""Labels: texts placed where they are free, the important ones first; values without a place, at the end of a line."""
+"""Labels: texts placed where they are free, the important ones first; values without a place, at the end of a line.
+
+While a hand drags, they keep their places and are moved only where others take these (`_Placing.kept`): 3 ms in place
+of 71 where a joint of a frame of 104 members is moved, which would lag behind the hand by them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-from pinjoint.systems.render.labels.nearness import NOBODY, Boxes, Codes, ranges
+from pinjoint.systems.render.labels.nearness import NOBODY, Boxes, Codes, ranges, within
 from pinjoint.systems.render.labels.occupancy import FAINT, STRONG, Occupancy
 from pinjoint.systems.render.marks import Discs, Mark, Owner, Panel, Points, Rows, Strokes, Text, Truths
 from pinjoint.systems.render.theme import Colour, faded
 from pinjoint.systems.render.typography import font_size, line_height, text_width
 
 ANCHORS = np.array([0.5, 0.35, 0.65, 0.2, 0.8])  # shares of a line where one that leads to it may end
-_LED, _REFERRED = 1000, 2000  # from which on numbers of places mean those with a line, and those of numbers
+# From which on numbers of places mean those with a line, those of numbers, none of these, those of smaller type.
+_LED, _REFERRED, _LISTED, _SMALLER = 1_000, 90_000, 99_999, 100_000
 _SMALL, _ENDS = 9.0, 6  # points, of smaller type; places where a line from a value may end that are tried
 _TRIED, _MOST_LED = 32, 16  # values of a picture that may have lines, and lines, since more would confuse
 LEADER_OPACITY, _DOT = 0.75, 1.75  # of these lines, and points, radius of the dot at their end
 _TURNS = np.array([0, *(way * k for k in range(1, 8) for way in (1, -1)), 8]) * np.pi / 8.0  # from the best way
 _LENGTHS = (14.0, 26.0, 40.0, 58.0, 80.0, 110.0, 150.0, 200.0)  # points
+_WAYS = len(_TURNS) * len(_LENGTHS)  # of lines from one anchor
 _USUAL = 5  # of these lengths, of lines from values in their usual type
 _STEP, _HALF = 4.0, 1.5  # points between the places where a line is tested; half the room it needs there
 _CLEAR, _OFF_DIAGRAMS = 3.0, 1.0  # points between a value and all else
@@ -42,7 +49,7 @@ class Label(NamedTuple):
     nearest to among the parts of the picture, if anything. anchors: of a value, where a line from it may lead, (k, 2), the
     best first; none: it is a name, which gives way to values. outward: the direction in which it had best stand from there.
     close: how many of the first places are so close that it may be nearer to something else if need be. short: what is told
-    in any case, in smaller type or beside a number; "": nothing.
+    in any case, in smaller type or beside a number; "": nothing. small: it is told so.
     """
 
     text: str
@@ -60,6 +67,11 @@ class Label(NamedTuple):
     outward: Points = np.array([0.0, -1.0])
     close: int = 0
     short: str = ""
+    small: bool = False
+
+    def smaller(self, unit: float) -> Label:
+        """As it is told in smaller type."""
+        return self._replace(text=self.short, size=font_size(_SMALL, unit), small=True)
 
 
 Numbered = tuple[int, Label, list[Mark]]  # a number that stands for a value, and its marks; 0: no room for it
@@ -71,114 +83,230 @@ def half_size(text: str, size: int, weight: str, unit: float) -> tuple[float, fl
 
 
 def place_labels(
-    labels: Iterable[Label], occupancy: Occupancy, unit: float, placed: Placed
+    labels: Iterable[Label], occupancy: Occupancy, unit: float, placed: Placed, *, steady: bool = False
 ) -> tuple[list[Mark], list[Numbered]]:
     """Marks of the labels that found a free place, values first, each in order of rank, and the values in whose places
     stand numbers, since these found none; others are left out.
 
-    placed: the places of labels in the last picture, updated; a label moves only where it then covers less.
+    placed: the places of labels in the last picture, updated; a label moves only where it then covers less. steady: only
+    where something else takes its place.
     """
-    ranked = sorted(labels, key=lambda label: label.rank)
-    former = {label.key: placed.get(label.key, -1) for label in ranked if label.key}
+    ranked, symbols = sorted(labels, key=lambda label: label.rank), occupancy.taken.copy()
+    at, numbers = _Placing(occupancy, unit, dict(placed), placed), list[Label]()
     placed.clear()
-    marks: list[Mark] = []
-    symbols = occupancy.taken.copy()
+    if steady:
+        ranked, numbers = at.kept(ranked)
     if ranked:
         occupancy.parts.gather(np.concatenate([label.places for label in ranked]))
     values, names = ([label for label in ranked if (len(label.anchors) == 0) == name] for name in (False, True))
-    left = _put(values, former, occupancy, unit, placed, marks)
+    left = at.beside(values)
     for smaller, over in ((False, False), (True, False), (True, True)) if left else ():
         if smaller and not over:
-            left = [n._replace(text=n.short, size=font_size(_SMALL, unit)) for n in left]
-            left = _put(left, former, occupancy, unit, placed, marks)
+            left = at.beside([label.smaller(unit) for label in left])
         left = [n for index, n in enumerate(left) if n.short or index < _TRIED]
         lengths = _LENGTHS if smaller and len(left) <= _MOST_LED else _LENGTHS[:_USUAL]
-        for turn in range(_ENDS):
-            left = _led(left, turn, lengths, over, former, occupancy, unit, placed, marks) if left else left
-            left = [n for n in left if n.short]
-    referred = _referred(left, symbols, former, occupancy, unit, placed) if left else []
-    left = _put(names, former, occupancy, unit, placed, marks)
-    close = [n._replace(places=n.places[: n.close], own=None) for n in left if n.close]
-    _put(close, former, occupancy, unit, placed, marks)
-    return marks, referred
+        left = [n for n in at.led(left, range(1), lengths, over) if n.short]
+        left = at.led(left, range(1, _ENDS), lengths, over)
+    referred = at.referred(numbers + left, len(numbers), symbols)
+    left = at.beside(names)
+    at.beside([n._replace(places=n.places[: n.close], own=None) for n in left if n.close])
+    return [*at.leaders(), *at.marks], referred
 
 
-def _put(
-    labels: Sequence[Label],
-    former: dict[Key, int],
-    occupancy: Occupancy,
-    unit: float,
-    placed: Placed,
-    marks: list[Mark],
-) -> list[Label]:
-    """Add the marks of labels that may be at one of their places; returns the others."""
-    before = [former.get(label.key, -1) if label.key else -1 for label in labels]
-    found = _beside(labels, before, occupancy, unit)
-    for index, (place, x, y) in found.items():
-        marks += _marks(labels[index], place, x, y, unit, placed)
-    return [label for index, label in enumerate(labels) if index not in found]
+@dataclass
+class _Placing:
+    """Labels on their way to places, whose numbers `former` and `placed` hold. lines: from them, by table and colour:
+    row, from, to."""
 
+    occupancy: Occupancy
+    unit: float
+    former: Placed
+    placed: Placed
+    marks: list[Mark] = field(default_factory=list)
+    lines: dict[tuple[str, Colour], list[tuple[int, Points, Points]]] = field(default_factory=dict)
 
-def _referred(
-    labels: Sequence[Label],
-    symbols: Truths,
-    former: dict[Key, int],
-    occupancy: Occupancy,
-    unit: float,
-    placed: Placed,
-) -> list[Numbered]:
-    """Numbers in place of values, on what these belong to, in need over `symbols`."""
-    digits = "0" * len(str(len(labels)))
-    half = np.array(half_size(digits, labels[0].size, "semibold", unit)) - [2.5 * unit, 0.5 * unit]
-    half[0] = max(half)
-    own, kin = _codes(labels, occupancy)
-    of = np.repeat(np.arange(len(labels)), [len(label.anchors) for label in labels])
-    middle = np.concatenate([label.anchors for label in labels])
-    boxes = Boxes(middle, np.broadcast_to(half, middle.shape), of)
-    number = np.arange(len(of)) - np.searchsorted(of, of)
-    held = (
-        number == np.array([former.get(label.key, -1) - _REFERRED if label.key else -1 for label in labels])[of]
-    )
-    inner = half - unit  # they may touch
-    cells = occupancy.cells_of(middle - inner, np.broadcast_to(2.0 * inner, middle.shape))
-    found = np.full(len(labels), -1)
-    for near in _NEAR_NUMBERS:  # what may be on it, more in need
-        limits = np.array(near)[:, None] * unit * np.ones(len(of))
-        at = np.flatnonzero(
-            occupancy.parts.are_clear(boxes, own, kin, limits) & occupancy.parts.are_on(boxes, own)
-        )
-        at = at[np.lexsort((~held[at], of[at]))]
-        at = at[found[of[at]] < 0]
-        if near is _NEAR_NUMBERS[-1]:
-            occupancy.taken &= ~symbols
-        _take(at, of[at], cells[at], found, occupancy)
-    occupancy.taken |= symbols
-    numbered: list[Numbered] = []
-    for label, place in sorted(zip(labels, found.tolist(), strict=True), key=lambda pair: pair[1] < 0):
-        count, marks = len(numbered) + 1, list[Mark]()
-        if place < 0:
-            count = 0
-        else:
-            (x, y), (wide, tall) = middle[place].tolist(), half.tolist()
+    def leaders(self) -> Iterator[Mark]:
+        """The lines from labels to what they belong to, those of one table and colour at once."""
+        for (table, colour), lines in self.lines.items():
+            rows, start, end = (np.array(column) for column in zip(*lines, strict=True))
+            of, faint = (table, rows) if table else None, faded(colour, LEADER_OPACITY)
+            yield Strokes(start, end, self.unit, faint, of)
+            yield Discs(end, np.full(len(end), _DOT * self.unit), faint, faint, of=of)
+
+    def kept(self, ranked: Sequence[Label]) -> tuple[list[Label], list[Label]]:
+        """Let labels stand where they stood by what they belong to; returns those that are to be placed, since something
+        takes their place or they must be told and were not, and those for which numbers stand."""
+        left, numbers, held = list[Label](), list[Label](), list[Label]()
+        for label in ranked:
+            code = self.former.get(label.key, -1) if label.key else -1
+            kind = left if code < 0 else numbers if code % _SMALLER >= _REFERRED else held
+            if code >= 0 or label.short or not label.key:
+                kind.append(label.smaller(self.unit) if code >= _SMALLER else label)
+        if not held:
+            return left, numbers
+        place, half, (low, high) = self._before(held), self._halves(held), self.occupancy.viewport.corners
+        led, (anchor, way) = place >= _LED, np.divmod(place - _LED, _WAYS)
+        sources = zip(held, np.where(led, anchor, place).tolist(), led.tolist(), strict=True)
+        lists = ((n.anchors if by_line else n.places, k) for n, k, by_line in sources)
+        ends = np.array([points[min(k, len(points) - 1)] for points, k in lists])
+        ways = self._ways(np.array([n.outward for n in held]), half, _LENGTHS)[np.arange(len(held)), way]
+        middle = ends + np.where(led[:, None], ways, 0.0)
+        inside = within(middle, low + half, high - half)
+        free = ~(led & (middle != inside).any(axis=1))
+        cells = self.occupancy.cells_of(inside - half, 2.0 * half).tolist()
+        for k, label in enumerate(held):
+            end = ends[k] if led[k] else None
+            if not (free[k] and self._stand(label, int(place[k]), inside[k], half[k], cells[k], end)):
+                left += [label] * bool(label.short)
+        return sorted(left, key=lambda label: label.rank), numbers
+
+    def beside(self, labels: Sequence[Label]) -> list[Label]:
+        """Let labels stand at one of their places; returns those that cannot.
+
+        The places of each are tried in order, first a few of all labels, since most of them stand at one of these.
+        """
+        if not labels:
+            return []
+        occupancy, count = self.occupancy, np.array([len(label.places) for label in labels])
+        of, first = np.repeat(np.arange(len(labels)), count), np.cumsum(count) - count
+        half, (low, high) = self._halves(labels)[of], occupancy.viewport.corners
+        middle = np.concatenate([label.places for label in labels])
+        middle = within(middle, low + half, high - half)  # into the viewport where it sticks out
+        cells = occupancy.cells_of(middle - half, 2.0 * half)
+        held = np.arange(len(of)) - first[of] == self._before(labels)[of]
+        clearly = ~held & np.array([label.backing is not None for label in labels])[of]
+        own, kin = _codes(labels, occupancy)
+        boxes, found = Boxes(middle, half, of), np.full(len(labels), -1)
+        tried = _attempts(labels, of, held, cells, occupancy)
+        number = np.arange(len(tried)) - np.searchsorted(of[tried], of[tried])
+        for begin, end in pairwise(_STAGES):
+            now = tried[(number >= begin) & (number < end) & (found[of[tried]] < 0)]
+            now = now[(own[of[now]] == NOBODY) | occupancy.may_be_of(cells[now], own[of[now]], kin[of[now]])]
+            now = now[occupancy.parts.own_is_nearest(boxes.some(now), own, kin, clearly[now])]
+            _take(now, of[now], cells[now], found, occupancy)
+        for index in np.flatnonzero(found >= 0).tolist():
+            place = int(found[index])
+            self._write(labels[index], place - int(first[index]), *middle[place].tolist())
+        return [label for index, label in enumerate(labels) if found[index] < 0]
+
+    def led(self, labels: Sequence[Label], turns: range, lengths: Sequence[float], over: bool) -> list[Label]:
+        """Let labels stand away from what they belong to, the first of them first, with a line that leads to an anchor;
+        returns those that cannot.
+
+        Of its anchors the first is taken that nothing else is near, or in turn those after it. Lines may cross the own
+        parts, and diagrams. over: labels may stand on these.
+        """
+        if not labels:
+            return []
+        half, (own, kin), before = self._halves(labels), _codes(labels, self.occupancy), self._before(labels)
+        which, anchor, turn, ends = _clear_ends(labels, turns, own, kin, self.occupancy)
+        ways = self._ways(np.array([n.outward for n in labels])[which], half[which], lengths)
+        of, place = np.repeat(which, ways.shape[1]), np.arange(ways.shape[1])
+        middle, end = (ends[:, None] + ways).reshape(-1, 2), np.repeat(ends, len(place), axis=0)
+        place, turn = (_LED + _WAYS * anchor[:, None] + place).ravel(), np.repeat(turn, len(place))
+        at = _clear_boxes(Boxes(middle, half[of], of), len(labels), over, self.occupancy)
+        at = at[np.lexsort((place[at] != before[of[at]], of[at], turn[at]))]  # stable
+        middle, of, end, place = middle[at], of[at], end[at], place[at]
+        start = within(end, middle - half[of], middle + half[of])
+        cells = self.occupancy.cells_of(middle - half[of], 2.0 * half[of]).tolist()
+        led, others = set[int](), 0
+        for k in _meet_nothing(start, end, own[of], kin[of], self.occupancy).tolist():
+            number, label = int(of[k]), labels[of[k]]
+            if number in led or (not label.short and others == _MOST_LED):
+                continue
+            if self._stand(label, int(place[k]), middle[k], half[number], cells[k], end[k]):
+                led.add(number)
+                others += not label.short
+        return [label for number, label in enumerate(labels) if number not in led]
+
+    def referred(self, labels: Sequence[Label], kept: int, symbols: Truths) -> list[Numbered]:
+        """Numbers in place of values, on what these belong to, in need over `symbols`; the first stay where they were."""
+        if not labels:
+            return []
+        occupancy, unit, digits = self.occupancy, self.unit, "0" * len(str(len(labels)))
+        half = np.array(half_size(digits, labels[0].size, "semibold", unit)) - [2.5 * unit, 0.5 * unit]
+        half[0] = max(half)
+        own, kin = _codes(labels, occupancy)
+        of = np.repeat(np.arange(len(labels)), [len(label.anchors) for label in labels])
+        middle = np.concatenate([label.anchors for label in labels])
+        boxes = Boxes(middle, np.broadcast_to(half, middle.shape), of)
+        number = np.arange(len(of)) - np.searchsorted(of, of)
+        held = number == (self._before(labels) - _REFERRED)[of]
+        inner = half - unit  # they may touch
+        cells = occupancy.cells_of(middle - inner, np.broadcast_to(2.0 * inner, middle.shape))
+        found, stay = np.repeat([-2, -1], [kept, len(labels) - kept]), np.flatnonzero(held & (of < kept))
+        found[of[stay]] = stay
+        for near in _NEAR_NUMBERS if kept < len(labels) else ():  # what may be on it, more in need
+            limits = np.array(near)[:, None] * unit * np.ones(len(of))
+            clear = occupancy.parts.are_clear(boxes, own, kin, limits) & occupancy.parts.are_on(boxes, own)
+            at = np.flatnonzero(clear)
+            at = at[np.lexsort((~held[at], of[at]))]
+            at = at[found[of[at]] == -1]
+            if near is _NEAR_NUMBERS[-1]:
+                occupancy.taken &= ~symbols
+            _take(at, of[at], cells[at], found, occupancy)
+        occupancy.taken |= symbols
+        numbered: list[Numbered] = []
+        for label, place in sorted(zip(labels, found.tolist(), strict=True), key=lambda pair: pair[1] < 0):
+            count, marks = len(numbered) + 1 if place >= 0 else 0, list[Mark]()
+            if place >= 0:
+                (x, y), (wide, tall) = middle[place].tolist(), half.tolist()
+                box = x - wide, y - tall, 2.0 * wide, 2.0 * tall
+                marks.append(Panel(*box, tall, label.backing or label.colour, label.colour, label.of))
+                marks.append(Text(str(count), x, y, label.size, label.colour, "semibold", "centre", label.of))
+            self._note(label, _REFERRED + int(number[place]) if place >= 0 else _LISTED)
+            numbered.append((count, label, marks))
+        return numbered
+
+    def _before(self, labels: Sequence[Label]) -> Rows:
+        """The number of the place of each in the last picture if it was as large there, else -1."""
+        former = [divmod(self.former.get(n.key, -1) if n.key else -1, _SMALLER) for n in labels]
+        found = (place if small == n.small else -1 for n, (small, place) in zip(labels, former, strict=True))
+        return np.fromiter(found, np.intp)
+
+    def _halves(self, labels: Sequence[Label]) -> Points:
+        return np.array([half_size(n.text, n.size, n.weight, self.unit) for n in labels])
+
+    def _ways(self, outward: Points, half: Points, lengths: Sequence[float]) -> Points:
+        """From ends of lines to the middles of labels, `half` their size, (n, k, 2); outward: which way is the best."""
+        angle = np.arctan2(outward[:, 1], outward[:, 0])[:, None] + np.tile(_TURNS, len(lengths))
+        direction = np.stack([np.cos(angle), np.sin(angle)], axis=2)
+        reach = np.repeat(lengths, len(_TURNS)) * self.unit + (np.abs(direction) * half[:, None]).sum(axis=2)
+        found: Points = direction * reach[:, :, None]
+        return found
+
+    def _stand(
+        self, label: Label, place: int, middle: Points, half: Points, cells: Sequence[int], end: Points | None
+    ) -> bool:
+        """Let a label stand there, if all that it and a line to its `end` take is free."""
+        taken, (left, top, right, bottom) = self.occupancy.taken, cells
+        if taken[top:bottom, left:right].any():
+            return False
+        if end is not None:
+            start = within(end, middle - half, middle + half)
+            count = int(np.hypot(*(end - start)) / (_STEP * self.unit)) + 2
+            row, column = self.occupancy.cell_of(end + np.arange(count)[:, None] / count * (start - end)).T
+            if taken[row, column].any():
+                return False
+            taken[row, column] = True
+            table, row = label.of or ("", 0)
+            self.lines.setdefault((table, label.colour), []).append((row, start, end))
+        taken[top:bottom, left:right] = True
+        self._write(label, place, *middle.tolist())
+        return True
+
+    def _write(self, label: Label, place: int, x: float, y: float) -> None:
+        """Write a label with its middle at x, y, the place of that number."""
+        self._note(label, place)
+        if label.backing is not None:
+            wide, tall = half_size(label.text, label.size, label.weight, self.unit)
             box = x - wide, y - tall, 2.0 * wide, 2.0 * tall
-            marks.append(Panel(*box, tall, label.backing or label.colour, label.colour, label.of))
-            marks.append(Text(str(count), x, y, label.size, label.colour, "semibold", "centre", label.of))
-        numbered.append((count, label, marks))
+            self.marks.append(Panel(*box, 4.0 * self.unit, label.backing, None, label.of))
+        self.marks.append(Text(label.text, x, y, label.size, label.colour, label.weight, "centre", label.of))
+
+    def _note(self, label: Label, place: int) -> None:
         if label.key:
-            placed[label.key] = _REFERRED + int(number[place])
-    return numbered
-
-
-def _marks(label: Label, place: int, x: float, y: float, unit: float, placed: Placed) -> list[Mark]:
-    """A label with its middle at x, y, the place of that number."""
-    if label.key:
-        placed[label.key] = place
-    marks: list[Mark] = []
-    if label.backing is not None:
-        wide, tall = half_size(label.text, label.size, label.weight, unit)
-        box = x - wide, y - tall, 2.0 * wide, 2.0 * tall
-        marks.append(Panel(*box, 4.0 * unit, label.backing, None, label.of))
-    return [*marks, Text(label.text, x, y, label.size, label.colour, label.weight, "centre", label.of)]
+            self.placed[label.key] = place + label.small * _SMALLER
 
 
 def _codes(labels: Sequence[Label], occupancy: Occupancy) -> tuple[Codes, Codes]:
@@ -188,44 +316,6 @@ def _codes(labels: Sequence[Label], occupancy: Occupancy) -> tuple[Codes, Codes]
         for keys in zip(*((n.own, n.of) for n in labels), strict=True)
     )
     return np.array(own, dtype=np.int64), np.array(of, dtype=np.int64)
-
-
-def _beside(
-    ranked: Sequence[Label], former: Sequence[int], occupancy: Occupancy, unit: float
-) -> dict[int, tuple[int, float, float]]:
-    """Of the labels that may be at one of their places its number, and where that is; former: in the last picture.
-
-    The places of each are tried in order, first a few of all labels, since most of them stand at one of these.
-    """
-    if not ranked:
-        return {}
-    count = np.array([len(label.places) for label in ranked])
-    of, first = np.repeat(np.arange(len(ranked)), count), np.cumsum(count) - count
-    half = np.array([half_size(label.text, label.size, label.weight, unit) for label in ranked])[of]
-    low, high = occupancy.viewport.corners
-    middle = np.concatenate([label.places for label in ranked])
-    middle = np.minimum(np.maximum(middle, low + half), high - half)  # into the viewport where it sticks out
-    cells = occupancy.cells_of(middle - half, 2.0 * half)
-    held = np.arange(len(of)) - first[of] == np.array(former)[of]
-    clearly = ~held & np.array([label.backing is not None for label in ranked])[of]
-    own, kin = _codes(ranked, occupancy)
-    boxes, found = Boxes(middle, half, of), np.full(len(ranked), -1)
-    tried = _attempts(ranked, of, held, cells, occupancy)
-    number = np.arange(len(tried)) - np.searchsorted(of[tried], of[tried])
-    for begin, end in pairwise(_STAGES):
-        now = tried[(number >= begin) & (number < end) & (found[of[tried]] < 0)]
-        now = now[(own[of[now]] == NOBODY) | occupancy.may_be_of(cells[now], own[of[now]], kin[of[now]])]
-        now = now[occupancy.parts.own_is_nearest(boxes.some(now), own, kin, clearly[now])]
-        _take(now, of[now], cells[now], found, occupancy)
-    settled = np.flatnonzero(found >= 0)
-    at = found[settled]
-    return dict(
-        zip(
-            settled.tolist(),
-            zip((at - first[settled]).tolist(), *middle[at].T.tolist(), strict=True),
-            strict=True,
-        )
-    )
 
 
 def _attempts(
@@ -271,66 +361,14 @@ def _take(places: Rows, of: Rows, cells: Rows, found: Rows, occupancy: Occupancy
 # --- lines to what labels belong to ----------------------------------------------------------------------
 
 
-def _led(
-    labels: Sequence[Label],
-    turn: int,
-    lengths: Sequence[float],
-    over: bool,
-    former: dict[Key, int],
-    occupancy: Occupancy,
-    unit: float,
-    placed: Placed,
-    marks: list[Mark],
-) -> list[Label]:
-    """Add labels that stand away from what they belong to, the first of them first, with a line that leads to an anchor;
-    returns the others.
-
-    Of its anchors the first is taken that nothing else is near, or that after so many turns. Lines may cross the own parts,
-    and diagrams. over: labels may stand on these.
-    """
-    anchors, outward = [label.anchors for label in labels], np.array([label.outward for label in labels])
-    half = np.array([half_size(label.text, label.size, label.weight, unit) for label in labels])
-    own, kin = _codes(labels, occupancy)
-    before = np.array([former.get(label.key, -1) - _LED if label.key else -1 for label in labels])
-    which, ends = _clear_ends(anchors, turn, own, kin, occupancy)
-    count = len(_TURNS) * len(lengths)
-    angle = np.arctan2(outward[which, 1], outward[which, 0])[:, None] + np.tile(_TURNS, len(lengths))
-    direction = np.stack([np.cos(angle), np.sin(angle)], axis=2)
-    reach = np.repeat(lengths, len(_TURNS)) * unit + (np.abs(direction) * half[which, None]).sum(axis=2)
-    middle = (ends[:, None] + direction * reach[:, :, None]).reshape(-1, 2)
-    of, end = np.repeat(which, count), np.repeat(ends, count, axis=0)
-    place = np.tile(np.arange(count), len(which))
-    at = _clear_boxes(Boxes(middle, half[of], of), len(labels), over, occupancy)
-    middle, of, end, place = middle[at], of[at], end[at], place[at]
-    start = np.clip(end, middle - half[of], middle + half[of])
-    order = np.lexsort((place != before[of], of))  # stable
-    clear = _meet_nothing(start[order], end[order], own[of[order]], kin[of[order]], occupancy)
-    led, others = set[int](), 0
-    for index in order[clear].tolist():
-        number, line = int(of[index]), (start[index], end[index])
-        label = labels[number]
-        if number in led or (not label.short and others == _MOST_LED):
-            continue
-        if not _take_line(middle[index], half[number], *line, occupancy):
-            continue
-        led.add(number)
-        others += not label.short
-        whose = (label.of[0], np.array([label.of[1]])) if label.of else None
-        colour = faded(label.colour, LEADER_OPACITY)
-        marks.append(Strokes(line[0][None], line[1][None], unit, colour, whose))
-        marks.append(Discs(line[1][None], np.array([_DOT * unit]), colour, colour, of=whose))
-        x, y = middle[index].tolist()
-        marks += _marks(label, _LED + int(place[index]), x, y, unit, placed)
-    return [label for number, label in enumerate(labels) if number not in led]
-
-
 def _clear_ends(
-    anchors: Sequence[Points], turn: int, own: Codes, kin: Codes, occupancy: Occupancy
-) -> tuple[Rows, Points]:
-    """Which values have an anchor that nothing else is near, but for diagrams in need, and of each the one after so
-    many turns, (n, 2)."""
-    of, points = np.repeat(np.arange(len(anchors)), [len(each) for each in anchors]), np.concatenate(anchors)
-    boxes, unit, possible = Boxes(points, np.zeros_like(points), of), occupancy.parts.unit, []
+    labels: Sequence[Label], turns: range, own: Codes, kin: Codes, occupancy: Occupancy
+) -> tuple[Rows, Rows, Rows, Points]:
+    """Anchors that nothing else is near, but for diagrams in need, so many of each value in turn: whose, which of its
+    anchors, in which turn, and where, (n, 2)."""
+    of = np.repeat(np.arange(len(labels)), [len(label.anchors) for label in labels])
+    points, unit = np.concatenate([label.anchors for label in labels]), occupancy.parts.unit
+    boxes, possible = Boxes(points, np.zeros_like(points), of), []
     for near in ((_CLEAR, 0.0, _CLEAR), (_HALF, -1.0, _HALF)):
         limits = np.array(near)[:, None] * unit * np.ones(len(of))
         possible.append(np.flatnonzero(occupancy.parts.are_clear(boxes, own, kin, limits)))
@@ -338,9 +376,10 @@ def _clear_ends(
     _, first = np.unique(clear, return_index=True)
     clear = clear[np.sort(first)]
     clear = clear[np.argsort(of[clear], kind="stable")]
-    number = np.arange(len(clear)) - np.searchsorted(of[clear], of[clear])
-    clear = clear[number == turn]
-    return of[clear], points[clear]
+    turn = np.arange(len(clear)) - np.searchsorted(of[clear], of[clear])
+    wanted = (turn >= turns.start) & (turn < turns.stop)
+    clear = clear[wanted]
+    return of[clear], clear - np.searchsorted(of, of[clear]), turn[wanted], points[clear]
 
 
 def _clear_boxes(boxes: Boxes, labels: int, over: bool, occupancy: Occupancy) -> Rows:
@@ -367,15 +406,3 @@ def _meet_nothing(start: Points, end: Points, own: Codes, kin: Codes, occupancy:
     boxes = Boxes(points, np.full(points.shape, _HALF * unit), line)
     clear = ~occupancy.taken[rows, columns] & occupancy.parts.are_clear(boxes, own, kin, limits)
     return np.setdiff1d(np.arange(len(start)), line[~clear])
-
-
-def _take_line(middle: Points, half: Points, start: Points, end: Points, occupancy: Occupancy) -> bool:
-    """Take a box and a line to it, if both are free."""
-    ((left, top, right, bottom),) = occupancy.cells_of((middle - half)[None], 2.0 * half[None]).tolist()
-    count = int(np.hypot(*(end - start)) / (_STEP * occupancy.parts.unit)) + 2
-    row, column = occupancy.cell_of(end + np.arange(count)[:, None] / count * (start - end)).T
-    if occupancy.taken[top:bottom, left:right].any() or occupancy.taken[row, column].any():
-        return False
-    occupancy.taken[top:bottom, left:right] = True
-    occupancy.taken[row, column] = True
-    return True

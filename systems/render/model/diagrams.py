@@ -276,13 +276,8 @@ def _crowding(sheet: Sheet, every: Values, side: Values, taken: float) -> float:
 
 
 def _baseline(sheet: Sheet, rows: Rows) -> Axes:
-    """The axes of rods in pixels as drawn, or where they were originally, as a person wants it."""
-    model, camera = sheet.model, sheet.view.camera
-    if model.settings.original_diagrams:
-        ends = model.particles.position[sheet.ends[rows]]
-        found = Axes(ends[:, 0], ends[:, 1], np.zeros((len(rows), 2)), np.zeros((len(rows), 5)))
-    else:
-        found = Axes.of(model, rows)
+    """The axes of rods in pixels as drawn."""
+    camera, found = sheet.view.camera, Axes.of(sheet.model, rows)
     left = found.left * [
         camera.scale,
         -camera.scale,

@@ -9,14 +9,14 @@ from functools import cached_property
 
 import numpy as np
 
-from pinjoint.components.bent import FLAT, Lines, curved_lines, is_frame, largest_sag
+from pinjoint.components.bent import FLAT, Lines, curved_lines, drawn_scale, is_frame, largest_sag
 from pinjoint.components.camera import Viewport
 from pinjoint.components.form import Form
 from pinjoint.components.model import Model
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import Hovered
 from pinjoint.components.toolbar import Toolbar
-from pinjoint.components.view import View, drawn_positions
+from pinjoint.components.view import Listing, View, drawn_positions
 from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels.occupancy import Occupancy
 from pinjoint.systems.render.labels.placing import Label, Placed
@@ -24,7 +24,8 @@ from pinjoint.systems.render.marks import Mark, Points, Rows, Truths, Values
 from pinjoint.systems.render.theme import Colour, Theme, pale
 from pinjoint.systems.render.typography import font_size
 
-Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
+Shown = Model | Form | Toolbar | Listing
+Stage = tuple[Shown, View]  # what is shown, and how
 
 FEW = 30  # elements, up to which each shows its name
 MANY = 2000  # rods, above which details of single elements are left out
@@ -170,7 +171,7 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     margin = 150.0 * unit  # so that the ends of a rod that leaves the viewport, and their labels, are not seen
     frame, reach, lines = is_frame(model), margin, None
     if frame:
-        sag = largest_sag(model) * model.settings.displacement_scale * camera.scale
+        sag = largest_sag(model) * drawn_scale(model) * camera.scale
         reach += min(2.0 * sag, float((high - low).max()))
     first, last = centres[ends.T]
     start, end, rods = clip_segments(first, last, low - reach, high + reach)

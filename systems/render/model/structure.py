@@ -1,12 +1,13 @@
-"""The model itself: grid, ghost of the undeformed structure, rods, particles, names, and a shape over all."""
+"""The model itself: grid, the shape that it had or gets, rods, particles, names, and a shape over all."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from pinjoint.components.bent import FLAT, Axes
+from pinjoint.components.bent import FLAT, Axes, Parts, drawn_scale
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.round_numbers import round_up
 from pinjoint.components.tags import Hovered, Selected
@@ -83,6 +84,22 @@ def draw_ghost(sheet: Sheet) -> None:
         sheet.explain("ghost", start, end)
         start, end, of = dashed(start, end, _DASH * sheet.unit)
         sheet.marks.append(Strokes(start, end, sheet.unit, sheet.theme.ghost, ("rods", rows[seen][of])))
+
+
+def draw_deflected(sheet: Sheet) -> None:
+    """The deflected shape as a thin line, where the structure is drawn undeformed and the eye can tell them apart."""
+    model, scale = sheet.model, float(sheet.model.settings.displacement_scale)
+    if drawn_scale(model) == scale or sheet.view.shape is not None or len(sheet.ends) > MANY:
+        return
+    rows, shares = np.arange(len(sheet.ends)), np.array([0.0, 0.5, 1.0])
+    axes = Axes.of(model, rows, scale)
+    away = sheet.view.camera.scale * np.abs(axes.points(shares) - Axes.of(model, rows).points(shares))
+    start, end = _lines(sheet, axes, rows)
+    if (away > _SHAPE_WIDTH * sheet.unit).any():
+        sheet.occupancy.line(start, end, FAINT)
+        sheet.explain("deflected", start, end)
+        colour = faded(sheet.colour_of("sketch"), _SHAPE_OPACITY)
+        sheet.marks.append(Strokes(start, end, _SHAPE_WIDTH * sheet.unit, colour))
 
 
 def _sagging(sheet: Sheet) -> Rows:
@@ -210,42 +227,56 @@ def _draw_circles(sheet: Sheet, rows: Rows, ink: Colour, hollow: Colour, rim: fl
 
 def draw_shape(sheet: Sheet) -> None:
     """The moving part of the structure, displaced by the shape from the state that the shape is about."""
-    shape, position = sheet.view.shape, sheet.model.particles.position
-    if shape is None or shape.displacement.shape != position.shape:
+    shape = sheet.view.shape
+    if shape is None:
+        return
+    parts = shape.parts or Parts.of(sheet.model)
+    position, joints = parts.position, sheet.model.particles.count
+    if shape.displacement.shape != position.shape or len(position) < joints:
         return
     if shape.about is not None:
-        position = position + shape.about * sheet.model.settings.displacement_scale
+        position = position + shape.about * drawn_scale(sheet.model)
     colour, swing = faded(sheet.theme.sketch, _SHAPE_OPACITY), sheet.view.swing
     pixels = np.hypot(*shape.displacement.T) * sheet.view.camera.scale
     moving = pixels > _SHAPE_FROM * sheet.unit
     if shape.rotation is not None:
         moving |= shape.rotation != 0.0
-    rows = np.flatnonzero(moving[sheet.ends].any(axis=1))
-    start, end = farthest = _lines_of_shape(sheet, shape, position, rows, 1.0)
+    parts = replace(
+        parts, between=parts.between[(drawn := moving[parts.between].any(axis=1))], rigid=parts.rigid[drawn]
+    )
+    start, end = farthest = _lines_of_shape(sheet, shape, position, parts, 1.0)
     if swing != 1.0:
-        start, end = _lines_of_shape(sheet, shape, position, rows, swing)
+        start, end = _lines_of_shape(sheet, shape, position, parts, swing)
     sheet.occupancy.line(*farthest, FAINT)  # so that labels stay where they are while it swings
     if len(start):
         sheet.marks.append(Strokes(start, end, _SHAPE_WIDTH * sheet.unit, colour))
     places = sheet.view.camera.to_pixels(position + swing * shape.displacement)
-    dots = places[moving & sheet.sees(places)]
+    dots = places[:joints][(moving & sheet.sees(places))[:joints]]
     if len(dots):
         sheet.marks.append(Discs(dots, np.full(len(dots), _SHAPE_RADIUS * sheet.unit), colour, colour))
 
 
 def _lines_of_shape(
-    sheet: Sheet, shape: Shape, position: Points, rows: Rows, swing: float
+    sheet: Sheet, shape: Shape, position: Points, parts: Parts, swing: float
 ) -> tuple[Points, Points]:
-    """Visible pieces of some rods in pixels, displaced from these positions by so much of a shape."""
-    moved = position + swing * shape.displacement
-    places, ends, to_pixels = sheet.view.camera.to_pixels(moved), sheet.ends[rows], sheet.view.camera.to_pixels
-    start, end = places[ends[:, 0]], places[ends[:, 1]]
+    """Visible pieces of rods in pixels, displaced from these positions by so much of a shape."""
+    rows, displacement = np.arange(len(parts.between)), swing * shape.displacement
+    moved, straight = position + displacement, np.zeros((len(rows), 5))
+    start, end = moved[parts.between.T]
+    axes = Axes(start, end, straight[:, :2], straight)
     if shape.rotation is not None:
-        bent = Axes.moved(sheet.model, rows, moved, swing * shape.displacement, swing * shape.rotation)
-        if (lines := bent.pieces(rows, FLAT / sheet.view.camera.scale)) is not None:
-            straight = ~sheet.chosen(lines.rods, rows)
-            start = np.concatenate([start[straight], to_pixels(lines.start)])
-            end = np.concatenate([end[straight], to_pixels(lines.end)])
+        axes = Axes.moved(parts, moved, displacement, swing * shape.rotation)
+    return _lines(sheet, axes, rows)
+
+
+def _lines(sheet: Sheet, axes: Axes, rows: Rows) -> tuple[Points, Points]:
+    """Visible pieces, in pixels, of the axes of some rods."""
+    to_pixels = sheet.view.camera.to_pixels
+    start, end = to_pixels(axes.start), to_pixels(axes.end)
+    if (lines := axes.pieces(rows, FLAT / sheet.view.camera.scale)) is not None:
+        straight = ~sheet.chosen(lines.rods, rows)
+        start = np.concatenate([start[straight], to_pixels(lines.start)])
+        end = np.concatenate([end[straight], to_pixels(lines.end)])
     return clip_segments(start, end, *sheet.viewport.corners)[:2]
 
 

@@ -71,13 +71,16 @@ def most_important(
     """Of the values of a field that are seen those worth most, as many as there may be room for; and how much they are.
 
     That is their size to two digits, so that tiny changes do not reorder labels. Values of the last picture count more,
-    so that labels do not come and go while forces vibrate. more: what is added to it.
+    so that labels do not come and go while forces vibrate; while a hand drags, of more than there is room for they alone
+    count. more: what is added to it.
     """
     size = np.maximum(np.abs(values), 1e-300)
     decade = 10.0 ** np.floor(np.log10(size))
     kept = np.array([row for name, row in sheet.placed if name == field], dtype=np.intp)
-    worth: Values = np.round(size / decade, 1) * decade * np.where(sheet.chosen(kept, rows), _KEPT, 1.0) + more
-    shown = np.sort(seen[np.lexsort((seen, -worth[seen]))][: room_for_values(sheet)])
+    before, room = sheet.chosen(kept, rows), room_for_values(sheet)
+    worth: Values = np.round(size / decade, 1) * decade * np.where(before, _KEPT, 1.0) + more
+    some = seen[before[seen]] if sheet.view.steady and len(seen) > room else seen
+    shown = np.sort(some[np.lexsort((some, -worth[some]))][:room])
     sheet.values[field] += len(seen) - len(shown)
     return shown, worth[shown]
 

@@ -10,6 +10,7 @@ from itertools import product
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.bent import farthest
 from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
@@ -35,7 +36,8 @@ BAR = 28.0  # points, height of the status bar
 _ROW, _ROWS_BESIDE = 28.0, 2  # of the legend: points, and how many stand beside the heading
 _STRIP = 19.0  # points, height of the scale
 _TALL = 8, 12, 16, 24, 5, 3, 2, 1  # rows of numbered values, where they find room
-_SCALE = ("scale", 0)  # the key by which its place is kept
+_SCALE, LIST = ("scale", 0), ("list", 0)  # keys by which their places are kept
+_WIDEST = 100_000  # pixels
 
 
 def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
@@ -249,6 +251,7 @@ MEANINGS = {
     "velocity": marked("velocity"),
     "hinge": marked("hinge"),
     "ghost": marked("undeformed"),
+    "deflected": marked("deflected"),
 }
 _SCALES = ("utilisation", "axial utilisation")
 UNITS = {
@@ -332,7 +335,8 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
     if name in _SCALES:
         return scale_bar(theme, x, y, width, u)
     in_ink = ("slack", "hinge", "moment", "shear", "velocity", "inertia")
-    colour = getattr(theme, "yielding" if name == "first" else "ink" if name in in_ink else name)
+    drawn_in = {"first": "yielding", "deflected": "sketch"} | dict.fromkeys(in_ink, "ink")
+    colour = getattr(theme, drawn_in.get(name, name))
     ends = np.array([[x, y]]), np.array([[x + width, y]])
     if name == "hinge":
         return [Stamps("ring", ends[0] + [width / 2, 0.0], 4.0 * u, u, theme.ink, theme.hollow)]
@@ -342,6 +346,8 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
         return [Strokes(*ends, 9.0 * u, faded(colour, HALO_OPACITY))]
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]
+    if name == "deflected":
+        return [Strokes(*ends, 1.25 * u, colour)]
     if name in ("slack", "ghost"):
         return [Strokes(*dashed(*ends, width / 5)[:2], 1.25 * u, colour)]
     return [Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour)]
@@ -403,8 +409,9 @@ def _scale(sheet: Sheet, metres: float, hidden: int, notes: list[str]) -> Plate 
     return Plate(row, faded(theme.background, 0.8), radius=4.0)
 
 
-def draw_references(sheet: Sheet, values: Sequence[Numbered]) -> list[Mark]:
-    """Numbers that stand for values, and these in columns that cover no text; neither where there is no room."""
+def draw_references(sheet: Sheet, values: Sequence[Numbered], former: int) -> list[Mark]:
+    """Numbers that stand for values, and these in columns that cover no text, where the last picture has them if that is
+    free; neither where there is no room. former: that place, -1 without one."""
     if not values:
         return []
     lines, occupancy, u = [], sheet.occupancy, sheet.unit
@@ -412,21 +419,24 @@ def draw_references(sheet: Sheet, values: Sequence[Numbered]) -> list[Mark]:
         table, row = label.of or ("rods", 0)
         name = Text(str(number or sheet.model.tables[table].names[row]), 9.0, label.colour, grow=1.0)
         lines.append(Row((name, Text(label.short, 9.0, label.colour, "semibold")), 6.0))
-    (left, top), (right, bottom) = sheet.viewport.corners
+    low, high = sheet.viewport.corners
+    held = np.array([divmod(former, _WIDEST)], dtype=np.float64)
     for covered, rows in product((0, STRONG), _TALL):
         columns = [Column(lines[at : at + rows]) for at in range(0, len(lines), rows)]
         inside = Row(columns, 10.0, (6.0, 3.0, 3.0), top=True)
         block = Plate(inside, faded(sheet.theme.background, 0.9), sheet.theme.line, radius=4.0)
         size = np.array([width := block.width(u), block.height(u, width)])
-        x = np.arange(left + 6.0 * u, right - size[0], 6.0 * u)
-        y = np.arange(bottom - 6.0 * u - size[1], top, -6.0 * u)
-        corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-        cells = occupancy.cells_of(corners, np.broadcast_to(size, corners.shape))
-        free = np.flatnonzero(occupancy.are_free(cells, covered))
-        if len(free):
-            paper = Paper(u)
-            paper.put(block, Rectangle(*corners[free[0]].tolist(), *size.tolist()))
-            return [*(mark for *_, own in values for mark in own), *paper.marks]
+        x = np.arange(low[0] + 6.0 * u, high[0] - size[0], 6.0 * u)
+        y = np.arange(high[1] - 6.0 * u - size[1], low[1], -6.0 * u)
+        inside_it = ((held >= low) & (held + size <= high)).all(axis=1)
+        for corners in (held[inside_it], np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)):
+            cells = occupancy.cells_of(corners, np.broadcast_to(size, corners.shape))
+            free = np.flatnonzero(occupancy.are_free(cells, covered))
+            if len(free):
+                at, paper = corners[free[0]].tolist(), Paper(u)
+                paper.put(block, Rectangle(*at, *size.tolist()))
+                sheet.scales[LIST] = int(at[0]) * _WIDEST + int(at[1])
+                return [*(mark for *_, own in values for mark in own), *paper.marks]
     for _, label, _ in values:
         sheet.placed.pop(label.key or ("", 0), None)
     return []
@@ -467,8 +477,12 @@ def _displacements(sheet: Sheet) -> list[str]:
     model, scale = sheet.model, sheet.model.settings.displacement_scale
     if scale != 1.0:
         return [] if sheet.view.slider_places else [tr("displacements ×{scale:g}", scale=scale)]
-    largest = float(np.abs(model.particles.displacement).max(initial=0.0)) if model.rods.count else 0.0
-    if not sheet.view.advises or not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
+    inside = farthest(model, np.flatnonzero(model.rods.bending_stiffness > 0.0))[0]
+    largest = float(np.append(inside, np.abs(model.particles.displacement)).max(initial=0.0))
+    if (
+        not (sheet.view.advises and model.rods.count)
+        or not _NOISE < largest * sheet.view.camera.scale < sheet.unit
+    ):
         return []
     return [
         tr(

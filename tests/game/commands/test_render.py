@@ -161,5 +161,12 @@ def test_the_static_equilibrium_is_drawn_with_the_numbers_of_a_hand_calculation(
     assert main([*words, "--theory", "first-order"]) == 0
     texts = {text.text for text in ET.parse(path).getroot().iter(f"{SVG}text")}
     assert {"60.00 kN·m", "20.00 kN·m", "80.00 kN", "20.00 kN"} <= texts
+    undeformed = path.read_text()
+    assert "deflected" in texts
+    assert main([*words, "--undeformed"]) == 0
+    assert path.read_text() == undeformed
+    assert main([*words, "--deformed"]) == 0
+    assert "deflected" not in {text.text for text in ET.parse(path).getroot().iter(f"{SVG}text")}
+    assert main([*words[:2], "--deformed", *words[3:]]) == 2  # not in statics
     assert main([*words, "--set", "particles.B.fixed=false,false"]) == 1  # a mechanism: the last equilibrium
     assert main([*words, "--at", "1"]) == 2

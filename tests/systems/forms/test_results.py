@@ -1,14 +1,18 @@
 """Results: what stands beside the boxes of properties."""
 
+import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pinjoint import Session
+from pinjoint.components.bent import farthest
 from pinjoint.documents import models
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.systems.forms.results import results
 from tests.reference.models import triangle
+from tests.systems.render.frame_models import EI, frame
 
 
 def readings(session: Session) -> dict[str, str]:
@@ -66,6 +70,40 @@ def test_several_elements_show_the_extremes_and_whose_they_are() -> None:
     assert shown["largest utilisation"] == "92.1 % (BC)"
     assert shown["largest displacement"].endswith("(B)")
     assert shown["sum of reactions"] == "x −120.0   y 160.0 kN"
+
+
+FAR = (1.0 + math.sqrt(33.0)) / 16.0  # where 1 − 9ξ² + 8ξ³ = 0
+
+
+@pytest.mark.parametrize(
+    ("supports", "factor", "at"),
+    [
+        (("AB", ""), 5.0 / 384.0, 0.5),
+        (("AB", "A"), (FAR - 3.0 * FAR**3 + 2.0 * FAR**4) / 48.0, 1.0 - FAR),
+        (("A", "A"), 1.0 / 8.0, None),
+    ],
+)
+def test_the_largest_displacement_counts_points_inside_members(
+    supports: tuple[str, str], factor: float, at: float | None
+) -> None:
+    """Under q: 5qL⁴/384EI in the middle; (ξ − 3ξ³ + 2ξ⁴) qL⁴/48EI at ξ = FAR from a hinge; qL⁴/8EI at a free end."""
+    held, clamped = supports
+    ends = {"A": 0.0, "B": 4.0}
+    facts = {name: {"fixed": [name in held] * 2, "fixed_rotation": name in clamped} for name in ends}
+    source = frame(
+        {name: (x, 0.0, facts[name]) for name, x in ends.items()}, {"A B": {"distributed_force": [0, -8]}}
+    )
+    session = Session.open(source)
+    session.press("q")
+    for chosen in ([session.rods["AB"]], [*session.rods, *session.particles]):
+        said = {one.title: one.text for one in results(session.model, chosen)}["largest displacement"]
+        size, _, where = said.partition(" cm ")
+        assert float(size) == pytest.approx(100.0 * factor * 8.0 * 4.0**4 / EI, rel=5e-4)
+        assert where == ("(B)" if at is None else "(AB)")
+    [size], [share] = farthest(session.model, np.array([0]))
+    assert size == pytest.approx(factor * 8.0 * 4.0**4 / EI, rel=1e-9)
+    assert share == pytest.approx(1.0 if at is None else at, abs=1e-7)
+    assert "largest displacement" not in {one.title for one in results(session.model, [session.particles["A"]])}
 
 
 def test_results_follow_an_accepted_value_at_once() -> None:

@@ -21,6 +21,7 @@ from pinjoint.systems.input.actions import (
     PROPERTIES,
     SAVE,
     SIMULATION,
+    TABLE,
     Action,
     Binding,
 )
@@ -85,10 +86,13 @@ def in_scene(scene: str) -> Session:
         LOAD: "d",
         FORCE_METHOD: "k",
         MENU: "menu",
+        TABLE: "n",
     }
     if scene in keys:
         session.press(keys[scene])
-    assert scene == MENU or session.scene == scene
+    if scene == TABLE:
+        session.view.pointer = session.view.table_place.middle
+    assert scene in (MENU, TABLE) or session.scene == scene
     assert (scene == MENU) == (session.view.menu is not None)
     return session
 
@@ -142,6 +146,17 @@ def _at_end(session: Session) -> None:
         session.press("wheel down")
 
 
+def _low_table(session: Session) -> None:
+    """So low that not all rows are in sight."""
+    session.resize(640, 300)
+    session.view.pointer = session.view.table_place.middle
+
+
+def _at_end_of_table(session: Session) -> None:
+    _low_table(session)
+    session.press("end")
+
+
 def _part(number: int, pick: str = "BD") -> Callable[[Session], None]:
     def go(session: Session) -> None:
         guide = session.scenes.active.guide  # type: ignore[attr-defined]
@@ -184,6 +199,11 @@ PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
     ("menu left", MENU): _in_wide_menu,
     ("menu right", MENU): _at_left_in_wide_menu,
     ("choose entry", MENU): _over_an_entry,
+    ("row above", TABLE): _deselected,
+    ("rows above", TABLE): _at_end_of_table,
+    ("rows below", TABLE): _low_table,
+    ("last rows", TABLE): _low_table,
+    ("first rows", TABLE): _at_end_of_table,
     ("redo", PAUSE): _undone,
     ("redo", SIMULATION): _undone,
     ("paste", PAUSE): _copied,
@@ -245,6 +265,8 @@ def seen(session: Session) -> Any:
         repr(session.gesture),
     ]
     shown += [session.clipboard, getattr(session.window, "asked", 0), session.notice]
+    if session.view.table:
+        shown.append(session.lister.listing)
     if isinstance(scene, FormScene):
         form = scene.form
         shown += [form.selected, form.chosen, form.first, form.message]

@@ -12,6 +12,8 @@ from pinjoint import Session
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.tags import DiagramShown
+from pinjoint.components.view import drawn_positions
+from pinjoint.systems.edit.picking import pick_rod
 from pinjoint.systems.render.backends.pygame_canvas import Canvas
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Picture, Strokes, Text
 from pinjoint.systems.render.picture import compose
@@ -150,16 +152,70 @@ def test_a_constant_moment_is_told_once() -> None:
     )
 
 
-def test_on_the_original_shape_if_wanted() -> None:
-    scale = {"displacement_scale": 60.0}
-    picture, session = shown(portal_at_rest(), MOMENT, **scale)
-    original, _ = shown(portal_at_rest(), MOMENT, original_diagrams=True, **scale)
-    columns = [areas(p, session, "CD") for p in (picture, original)]
-    count = len(columns[0]) // 2
-    camera, positions = session.view.camera, session.model.particles.position
-    assert columns[1][0] == pytest.approx(camera.to_pixels(positions[2]), abs=1.0)
-    assert np.ptp(columns[1][:count, 0]) < 1e-6, "a straight column"
-    assert np.ptp(columns[0][:count, 0]) > 10.0
+def simple_beam(q: float = -8.0, length: float = 4.0) -> Session:
+    """A beam on two supports under a distributed force (kN/m), in statics by first-order theory."""
+    source = frame(
+        {"A": (0.0, 0.0, PINNED), "B": (length, 0.0, ROLLER)}, {"A B": {"distributed_force": [0, q]}}
+    )
+    session = Session.open(source)
+    session.resize(1000, 720)
+    session.press("q")
+    session.frame(0.0)
+    session.view.fit(session.model)
+    return session
+
+
+def deflected(session: Session) -> np.ndarray:
+    """The ends (m) of the pieces of the thin line of the deflected shape, in order, (n, 2)."""
+    colour = faded(LIGHT.sketch, 0.75)
+    marks = [m for m in compose(session.model, session.view, LIGHT).marks if isinstance(m, Strokes)]
+    lines = [np.concatenate([m.start, m.end]) for m in marks if m.colour == colour]
+    return in_metres(session, np.concatenate(lines)) if lines else np.empty((0, 2))
+
+
+def in_metres(session: Session, pixels: np.ndarray) -> np.ndarray:
+    return np.array([session.view.camera.to_model(pixel) for pixel in pixels.tolist()])
+
+
+def baseline(session: Session) -> np.ndarray:
+    """The points (m) on which the diagram of AB stands, (n, 2)."""
+    corners = areas(compose(session.model, session.view, LIGHT), session, "AB")
+    return in_metres(session, corners[: len(corners) // 2])
+
+
+def test_statics_is_drawn_undeformed_with_its_deflected_shape_beside() -> None:
+    """5qL⁴/384EI at the middle of a simple beam, times the displacement scale."""
+    session = simple_beam()
+    model, scale, sag = session.model, session.settings.displacement_scale, 5.0 * 8.0 * 4.0**4 / 384.0 / EI
+    assert scale * sag > 0.02 * 4.0
+    np.testing.assert_allclose(baseline(session)[:, 1], 0.0, atol=1e-9)
+    lines = deflected(session)
+    assert lines[:, 1].min() == pytest.approx(-scale * sag, rel=1e-9)
+    assert lines[:, 1].max() <= 1e-9
+    assert "deflected" in picture_of(session).meanings
+    assert (
+        pick_rod(model, session.view, session.view.camera.to_pixels(np.array([2.0, 0.0]))) == model.rods["AB"]
+    )
+    session.settings.displacement_scale = 1.0
+    assert not len(deflected(session)), "the eye sees no difference"
+
+
+def test_y_draws_it_deformed_and_can_be_undone() -> None:
+    session = simple_beam()
+    places = session.model.particles.position
+    session.particles["B"].displacement = (0.0, -0.01)  # a support that settles
+    np.testing.assert_array_equal(drawn_positions(session.model), places)
+    session.press("y")
+    scale = session.settings.displacement_scale
+    assert not len(deflected(session))
+    assert drawn_positions(session.model)[1] == pytest.approx((4.0, -0.01 * scale))
+    assert baseline(session)[-1] == pytest.approx((4.0, -0.01 * scale))
+    session.undo()
+    np.testing.assert_array_equal(drawn_positions(session.model), places)
+    session.press("q")  # pause shows the state, as it is
+    assert drawn_positions(session.model)[1] == pytest.approx(
+        (4.0, -0.01 * session.settings.displacement_scale)
+    )
 
 
 def test_one_scale_for_all_which_is_steady() -> None:

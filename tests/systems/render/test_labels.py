@@ -113,15 +113,17 @@ def test_names_of_all_show_only_where_there_are_few() -> None:
 PLACES = [(30.0, 50.0), (70.0, 50.0)]
 
 
-def place_of(blocked: float | None, placed: Placed, line: tuple[float, int] | None = None) -> float | None:
+def place_of(
+    blocked: float | None, placed: Placed, line: tuple[float, int] | None = None, *, steady: bool = False
+) -> float | None:
     """The x at which a label stands that may be at 30 or 70, by a square that is taken and a line."""
     occupancy = Occupancy(Viewport(0, 0, 100, 100), 1.0)
     if blocked is not None:
         occupancy.block(blocked - 5.0, 45.0, 10.0, 10.0)
     if line is not None:
         occupancy.line(np.array([[line[0], 0.0]]), np.array([[line[0], 100.0]]), line[1])
-    label = Label("1", PLACES, 11, LIGHT.text, 0.0, key=("rods.name", 7))
-    marks, _ = place_labels([label], occupancy, 1.0, placed)
+    label = Label("1", PLACES, 11, LIGHT.text, 0.0, key=("rods.name", 7), short="1")
+    marks, _ = place_labels([label], occupancy, 1.0, placed, steady=steady)
     return next((mark.x for mark in marks if isinstance(mark, Text)), None)
 
 
@@ -139,6 +141,14 @@ def test_labels_move_to_where_they_cover_less() -> None:
     assert place_of(None, {("rods.name", 7): 1}, (70.0, STRONG)) == 30.0
     assert place_of(None, {("rods.name", 7): 1}, (30.0, STRONG)) == 70.0
     assert place_of(30.0, {("rods.name", 7): 0}, (70.0, FAINT)) == 70.0
+
+
+def test_while_a_hand_drags_labels_move_only_from_what_is_taken() -> None:
+    placed: Placed = {}
+    assert place_of(None, placed, steady=True) == 30.0, "it was nowhere"
+    assert place_of(None, placed, (30.0, STRONG), steady=True) == 30.0
+    assert place_of(30.0, placed, (30.0, STRONG), steady=True) == 70.0
+    assert place_of(None, placed, steady=True) == 70.0
 
 
 def test_what_has_no_place_any_more_is_forgotten() -> None:
