@@ -28,4 +28,4 @@ def test_any_edits_in_statics(seed: int) -> None:
     """3: a rod a tenth too long that yields, 5: a structure with a slack cable that falls in on itself, took minutes."""
     seen = Counter[str]()
     solved_edits.attempt(seed, 60, seen)
-    assert seen["stable"] > 30
+    assert seen["stable"] > 20
