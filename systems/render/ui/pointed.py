@@ -57,10 +57,11 @@ def _free_place(sheet: Sheet, handle: Handle, size: Points) -> Rectangle | None:
     away = np.maximum(np.maximum(corners - pointer, pointer - corners - size), 0.0)
     distance = np.hypot(*away.T)
     corners, distance = corners[distance >= _NEAR * u], distance[distance >= _NEAR * u]
-    cells = sheet.occupancy.cells_of(corners, np.broadcast_to(size, corners.shape))
     start, end, reach = _outline(sheet, handle)
     for covered, farthest in ((0, _BESIDE * u), (STRONG, np.inf)):
-        free = np.flatnonzero(sheet.occupancy.are_free(cells, covered) & (distance <= farthest))
+        near = np.flatnonzero(distance <= farthest)
+        cells = sheet.occupancy.cells_of(corners[near], np.broadcast_to(size, (len(near), 2)))
+        free = near[sheet.occupancy.are_free(cells, covered)]
         for index in free[np.argsort(distance[free], kind="stable")].tolist():
             corner = corners[index]
             if not len(clip_segments(start, end, corner - reach, corner + size + reach)[2]):
