@@ -61,8 +61,8 @@ class Status:
 
     time: simulated seconds, if they matter. speed: simulated seconds per second shown (0: halted). state: such as
     "running", "at rest", "diverged". hint: the next possible step. problem: why it stopped, or "".
-    notice: what the last action did, or what is being waited for, or "". share: how much of what the notice says is
-    done, from 0 to 1; None: it is no work.
+    notice: what the last action did, or what is being waited for, or "". offer: title and action of a
+    button beside it. share: how much of what the notice says is done, from 0 to 1; None: it is no work.
     """
 
     time: float | None = 0.0
@@ -72,6 +72,7 @@ class Status:
     problem: str = ""
     notice: str = ""
     share: float | None = None
+    offer: tuple[str, str] | None = None
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ from pinjoint.components.wording import cut, missing, remedy
 
 EVERY = "*"  # in place of a name: all elements of the table
 TIME = "time"  # the path of the simulated time
+FACTOR = "load_factor"  # the path of that of what statics shows
 ENERGIES = {  # that are reported, in this order, and what people call them
     "kinetic": marked("kinetic"),
     "elastic": marked("elastic"),
@@ -271,6 +272,8 @@ def quantity(model: Model, path: str) -> Quantity:
     """The quantity that a path leads to. Raises PathError."""
     if path == TIME:
         return Quantity(path, "t", "s", lambda session: session.time)
+    if path == FACTOR:
+        return Quantity(path, tr("load factor"), "", lambda session: session.model.share)
     table, _, rest = path.partition(".")
     if table == "energy":
         with quoted(path):

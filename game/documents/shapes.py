@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,9 @@ from pinjoint.components.view import Shape
 from pinjoint.components.wording import cut
 from pinjoint.documents.assessment import LARGEST
 from pinjoint.systems.edit.arrows import extent
+
+if TYPE_CHECKING:  # it imports scipy
+    from pinjoint.systems.statics.settle import Settlement
 
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
 LOWEST = 10  # mechanisms, and modes, in the round of `next`
@@ -39,7 +43,7 @@ class Shapes:
         self._model = model
         self._round: list[Shape] = []  # the shapes that `next` goes through
         self._shown: Shape | None = None
-        self._revision = -1
+        self._revision: tuple[int, object, str] = (-1, None, "")
         self._time = 0.0
 
     @property
@@ -49,9 +53,10 @@ class Shapes:
             self._shown = None
         return self._shown
 
-    def _newest(self, shape: Shape) -> int:
-        """The revision of the newest change that matters to a shape: of the state, too, if it is about an equilibrium."""
-        return self._model.newest(Role.DOCUMENT, *(() if shape.about is None else (Role.STATE,)))
+    def _newest(self, shape: Shape) -> tuple[int, object, str]:
+        """What matters to a shape: the newest edit, change of the state if it is about an equilibrium, and the theory."""
+        newest = self._model.newest(Role.DOCUMENT, *(() if shape.about is None else (Role.STATE,)))
+        return newest, self._model.solution, self._model.settings.theory if self._model.solution else ""
 
     def show(self, shape: Shape) -> None:
         """Draw a shape until the model is edited, or leaves the equilibrium that the shape is about."""
@@ -160,7 +165,7 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     """Natural modes by frequency, the lowest 50 of a large structure, or `most`.
 
     About the present state, if that is an equilibrium under load, whose forces stiffen or soften the structure;
-    else of the unloaded structure, less its mechanisms.
+    else, and in first-order theory, of the unloaded structure, less its mechanisms.
     """
     from pinjoint.systems.statics.state import Start
     from pinjoint.systems.statics.theory import FULL, Indeterminacy
@@ -169,7 +174,7 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     if model.rods.count == 0:
         return []
     degrees = Indeterminacy.of(model)
-    about = Start.present(model) if rests_under_load(model) else None
+    about = Start.present(model) if not model.first_order and rests_under_load(model) else None
     if most is None and degrees.mechanisms + degrees.rank > FULL:
         most = LOWEST_OF_LARGE
     found = Vibrations.of(model, about, count=None if most is None else degrees.mechanisms + most)
@@ -193,6 +198,15 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
         )
         for number, (hertz, motion) in enumerate(modes[:most], start=1)
     ]
+
+
+def last_motion(model: Model, settlement: Settlement) -> Shape | None:
+    """The motion into which the last state passes that statics finds; None where that is an equilibrium."""
+    motions = [event.motion for event in settlement.events if event.motion is not None]
+    if settlement.final.balanced or not motions:
+        return None
+    said = tr("A mechanism: nothing resists this motion")
+    return _shape(model, said, motions[-1], settlement.final.displacement)
 
 
 def numbered(model: Model, kind: str, number: int) -> Shape:

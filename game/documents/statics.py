@@ -6,7 +6,9 @@ displacements and reactions are its own, so that pictures, panels, tables and sc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,9 +18,12 @@ from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import nodes
 from pinjoint.components.theory import EXACT, FIRST_ORDER
+from pinjoint.components.view import Shape
+from pinjoint.documents.shapes import last_motion
 
 if TYPE_CHECKING:  # it imports scipy
     from pinjoint.systems.statics.settle import Settlement
+    from pinjoint.systems.statics.state import StaticState
 
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
 MOST_COMPARED = 300  # rods, up to which both theories take a moment only
@@ -27,12 +32,22 @@ _CHOICES = "theory", "load_steps"  # of the settings
 _MOVED = "displacement", "rotation"  # of constrained directions: settled supports
 
 
+@dataclass(frozen=True)
+class Step:
+    """What the model shows of a state on the way to its solution."""
+
+    columns: Mapping[str, Column]
+    share: float
+    first_order: bool
+    revision: int
+
+
 class Statics:
     """The static solution of a model: a function of its document, by the theory and load steps of its settings.
 
     strain: the plastic strain of its undeformed beginning. settlement: the way through the load steps; None where none
-    can be computed, which `problem` explains. revision: at which it was found. offered: that of which a person was told
-    that it would not move.
+    can be computed, which `problem` explains. motion: into which its last state passes, where that is no equilibrium.
+    revision: at which it was found. offered: that of which a person was told that it would not move.
     """
 
     def __init__(self, model: Model, strain: Callable[[], Column]) -> None:
@@ -42,6 +57,7 @@ class Statics:
         self._columns: Mapping[str, Column] = {}
         self._settlement: Settlement | None = None
         self.problem = ""
+        self.motion: Shape | None = None
         self.revision, self.offered = 0, -1
         self._compared = -1, ""  # the revision of which the theories were compared, and what is said of them
         self._rest = -1, 0.0  # the revision that was asked for last, and since when (s)
@@ -169,18 +185,38 @@ class Statics:
         return self._compared[1]
 
     def _find(self) -> None:
-        from pinjoint.systems.statics.external import External
-
         model = self._model
         try:
             self._settlement, self.problem = self.settled(), ""
         except ValueError as error:
-            self._settlement, self.problem = None, str(error)
+            self._settlement, self.problem, self.motion = None, str(error), None
             self._columns = {}
             return
-        final = self._settlement.final
-        acting = External.of(model).at(final.load_factor)
-        self._columns = final.columns | {
+        self._columns = self._shown(self._settlement.final)
+        self.motion = last_motion(model, self._settlement)
+
+    def _shown(self, state: StaticState) -> Mapping[str, Column]:
+        """What columns show of a state, by "table.field"."""
+        from pinjoint.systems.statics.external import External
+
+        acting = External.of(self._model).at(state.load_factor)
+        return state.columns | {
             "particles.applied_force": acting[:, :2],
             "particles.applied_moment": acting[:, 2] if acting.shape[1] > 2 else np.zeros(len(acting)),
         }
+
+    def on_the_way(self, parts: int) -> Iterator[float]:
+        """Let the model show the states on the way through the load steps, each in so many parts; yields load factors."""
+        model, steps = self._model, (0.0, *self._model.settings.load_steps)
+        shares = np.arange(1, parts + 1) / parts
+        factors = [0.0, *(a + share * (b - a) for a, b in pairwise(steps) for share in shares)]
+        outer = model.solution
+        try:
+            for state in self.settled(load_factors=factors).states:
+                if state.balanced:
+                    with model.own_state():
+                        columns = self._shown(state)
+                    model.show(Step(columns, state.load_factor, self.first_order, model.next_revision()))
+                    yield state.load_factor
+        finally:
+            model.show(outer)

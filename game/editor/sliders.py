@@ -23,7 +23,12 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.arrows import extent, usual
 from pinjoint.systems.input.actions import LIVE
 
-SCALE = -1  # the key of the control of the displacement scale
+SCALE, LOAD = (
+    -1,
+    -2,
+)  # the keys of the controls of the displacement scale and, in statics, of the last load step
+HIGH = 400.0  # points of a canvas that has room for that of the load
+LOADS = Slider((), 0.0, 2.0)  # the range of that, unless the model needs more
 SCALES = Slider((), 1.0, 1000.0, logarithmic=True)  # of displacements, unless the model needs more
 ABOVE = 28.0  # points, of the status bar
 DECADES = 10.0  # a new slider of a stiffness goes from the value / 10 to the value × 10
@@ -46,9 +51,15 @@ def slider_stack(context: Context) -> SliderStack:
 
 
 def sliders_of(context: Context) -> SliderStack:
-    """The sliders of the open document: the displacement scale at the bottom, then those of the model."""
+    """The sliders of the open document: displacement scale at the bottom, load factor of statics, those of the model."""
     model = context.model
     scale = [scale_control(model.settings)] if model.rods.count else []
+    high = context.view.canvas.height >= HIGH * context.view.pixel_ratio
+    if scale and high and model.solution is not None:
+        factor = model.settings.load_steps[-1]
+        share = loads(model.settings).share_of(factor)
+        value = decimals(f"× {factor:.4g}".replace("-", "−"))
+        scale.append(Control(LOAD, tr("load factor"), value, share, "× 1", pressed=factor == 1.0))
     own = (control_of(model, key, slider) for key, slider in enumerate(model.sliders))
     return SliderStack((*scale, *(control for control in own if control is not None)), ABOVE)
 
@@ -65,6 +76,12 @@ def scales(settings: Settings) -> Slider:
     """The range of displacement scales: from 1 to 1000, or to as much as the model needs."""
     most = max(SCALES.last, 10.0 * settings.automatic_displacement_scale, settings.displacement_scale)
     return Slider((), SCALES.first, 10.0 ** math.ceil(math.log10(most) - 1e-9), logarithmic=True)
+
+
+def loads(settings: Settings) -> Slider:
+    """The range of load factors: from 0 to 2, or as far as the last load step goes."""
+    last = settings.load_steps[-1]
+    return replace(LOADS, first=min(LOADS.first, last), last=max(LOADS.last, last))
 
 
 def control_of(model: Model, key: int, slider: Slider) -> Control | None:

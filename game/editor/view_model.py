@@ -13,6 +13,7 @@ from pinjoint.components.language import begun, english, joined, listed, marked,
 from pinjoint.components.model import Model
 from pinjoint.components.settings import PAUSE
 from pinjoint.components.tags import Hovered
+from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import DrawRod
@@ -60,11 +61,14 @@ def show(context: Context, elapsed: float) -> None:
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
     lately = context.document.chronicle.told(elapsed) if context.scene in LIVE else ""
+    offer = None
     if context.notice:
         lasting = [context.notice]
     elif solved:
         rested = None if context.window is None else elapsed
         lasting = [statics.message, statics.second_order(rested) if context.gesture is None else ""]
+        if lasting[1]:
+            offer = tr(NAMES[EXACT if statics.first_order else FIRST_ORDER]), "next theory"
     else:
         remarks = [remark.message for remark in context.document.assessment.remarks]
         lasting = [*remarks, "" if follows(context) else _gone(context)]
@@ -75,7 +79,7 @@ def show(context: Context, elapsed: float) -> None:
     view.flashes = _flashes(context)
     view.heading, view.steady = tr(scene.heading), isinstance(context.gesture, Placing)
     view.provisional = _provisional(context)
-    view.shape = context.document.shapes.shown
+    view.shape = context.document.shapes.shown or (statics.motion if solved else None)
     view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
     _show_readouts(context)
     _point_out(context)
@@ -88,6 +92,7 @@ def show(context: Context, elapsed: float) -> None:
         hint=drawing or scene.hint(context),
         problem=_problem(context),
         notice=said or joined([lately, *lasting]),
+        offer=offer if not said else None,
         share=min(awaited.seconds / awaited.expected, 0.99) if awaited is not None else None,
     )
 

@@ -16,15 +16,16 @@ from pinjoint.components.field import ENDS
 from pinjoint.components.language import english, joined, listed, marked, tr
 from pinjoint.documents.models import replace
 from pinjoint.mods import App
-from pinjoint.paths import TIME, Quantity, quantity
+from pinjoint.paths import FACTOR, TIME, Quantity, quantity
 from pinjoint.systems.base import Phase, System
-from pinjoint.systems.edit import saving
+from pinjoint.systems.edit import Refusal, saving
 
 if TYPE_CHECKING:  # a command needs no editor
     from pinjoint.editor.context import Context
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
+PARTS = 24  # of each load step of statics, at which a plot has points
 ENERGIES = {  # by path, as legends name them
     "energy.kinetic": marked("kinetic"),
     "energy.elastic": marked("elastic"),
@@ -54,6 +55,12 @@ class Probe:
     read: tuple[Quantity, ...]
     samples: array[float] = field(default_factory=lambda: array("d"))
     revision: int = 0
+    solved: int = -1  # the revision of statics of which the samples are
+
+    @property
+    def of_statics(self) -> bool:
+        """True if it is sampled on the way to the solution of statics, not in time."""
+        return self.against.path == FACTOR
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -70,9 +77,9 @@ class Probe:
         """The time of the last sample (s)."""
         return self.samples[-2 - len(self.read)] if self.samples else None
 
-    def sample(self, session: Context) -> None:
+    def sample(self, session: Context, time: float) -> None:
         """Take one sample; samples at this time or later are dropped first (time was taken back)."""
-        width, time = 2 + len(self.read), session.time
+        width = 2 + len(self.read)
         while self.samples and self.samples[-width] >= time:
             del self.samples[-width:]
         self.samples.extend([time, self.against.read(session), *(q.read(session) for q in self.read)])
@@ -113,13 +120,32 @@ class Probes:
         self.all = [*self.all, probe][-FEW:]
         return probe
 
+    def of(self, session: Context) -> list[Probe]:
+        """Those of what is shown: of statics, or in time."""
+        solved = session.model.solution is not None
+        return [probe for probe in self.all if probe.of_statics == solved]
+
     def sample(self, session: Context) -> None:
-        """Take a sample of every probe for which time has passed."""
-        behind = [probe for probe in self.all if probe.time != session.time]
+        """Take a sample of every probe for which time has passed; in statics, of the way to a new solution."""
+        if session.model.solution is not None:
+            self._sample_statics(session)
+            return
+        behind = [probe for probe in self.of(session) if probe.time != session.time]
         if behind and session.simulation.programs.ready:
             session.simulation.observe()
             for probe in behind:
-                probe.sample(session)
+                probe.sample(session, session.time)
+
+    def _sample_statics(self, session: Context) -> None:
+        statics = session.document.statics
+        if statics.settlement is None or session.gesture is not None:  # a drag goes on
+            return
+        behind = [probe for probe in self.of(session) if probe.solved != statics.revision]
+        for number, _ in enumerate(statics.on_the_way(PARTS) if behind else ()):
+            for probe in behind:
+                probe.sample(session, float(number))
+        for probe in behind:
+            probe.solved = statics.revision
 
 
 _probes: weakref.WeakKeyDictionary[Context, Probes] = weakref.WeakKeyDictionary()
@@ -141,14 +167,17 @@ class Sampling(System):
     reads = ("document", "state")
     writes = ("probes",)
     headless = False
-    scenes = ("simulation", "pause")
+    scenes = ("simulation", "pause", "statics")
 
     def process(self, frame: Any) -> None:
         probes_of(frame.session).sample(frame.session)
 
 
 def choices(session: Context) -> list[tuple[tuple[str, ...], str]]:
-    """(paths, path against which) of the plots that suit the selection; the energies if nothing is selected."""
+    """(paths, path against which) of the plots that suit the selection; the energies if nothing is selected.
+
+    In statics those against the load factor, none if nothing is selected.
+    """
     found: list[tuple[tuple[str, ...], str]] = []
     for handle in session.selected[-1:]:
         pairs = OF_ROD if isinstance(handle, Rod) else OF_PARTICLE if isinstance(handle, Particle) else ()
@@ -158,13 +187,17 @@ def choices(session: Context) -> list[tuple[tuple[str, ...], str]]:
             pairs = (*pairs, ("rotation", TIME))
         start = f"{handle.table}.{getattr(handle, 'name', '')}."
         found = [((start + y,), x if x == TIME else start + x) for y, x in pairs]
-    return found or [(tuple(ENERGIES), TIME)]
+    if session.model.solution is None:
+        return found or [(tuple(ENERGIES), TIME)]
+    return [(paths, FACTOR) for paths, against in found if against == TIME]
 
 
 def plot_next(session: Context, pixel: Vector) -> None:
     """Plot the first quantity of the selection, then the next; after the last one, none."""
     probes = probes_of(session)
     offered = choices(session)
+    if not offered:
+        raise Refusal("Select a particle or a rod first; then O plots it against the load factor.")
     keys = [(against, *paths) for paths, against in offered]
     shown = [keys.index(probe.key) for probe in probes.all if probe.key in keys]
     probes.all = [probe for probe in probes.all if probe.key not in keys]
@@ -190,9 +223,10 @@ def zoom(factor: float, session: Context) -> None:
 
 def save(session: Context, pixel: Vector) -> None:
     """Write every plot as CSV and PNG into the working folder."""
-    paths = [Path.cwd() / f"pinjoint-plot-{number}.csv" for number, _ in enumerate(probes_of(session).all, 1)]
+    shown = probes_of(session).of(session)
+    paths = [Path.cwd() / f"pinjoint-plot-{number}.csv" for number, _ in enumerate(shown, 1)]
     with saving():
-        for probe, path in zip(probes_of(session).all, paths, strict=True):
+        for probe, path in zip(shown, paths, strict=True):
             write_csv(probe, path)
             write_png(probe, path.with_suffix(".png"), session.view.theme)
     names = listed([path.stem for path in paths])
@@ -207,8 +241,9 @@ def write_csv(probe: Probe, path: Path) -> None:
     """Write one sample a line: the time and the quantities, in the units of the headings."""
     against = [] if probe.against.path == TIME else [1]
     titles = [*([probe.against.title] if against else []), *(read.title for read in probe.read)]
-    heads = ["time (s)", *map(english, titles)]
-    samples = probe.table[:, [0, *against, *range(2, 2 + len(probe.read))]].tolist()
+    timed = [] if probe.of_statics else [0]
+    heads = [*["time (s)" for _ in timed], *map(english, titles)]
+    samples = probe.table[:, [*timed, *against, *range(2, 2 + len(probe.read))]].tolist()
     replace(path, written.as_csv([heads, *samples]).encode())
 
 
@@ -222,15 +257,19 @@ def write_png(probe: Probe, path: Path, theme: str = "light") -> None:
 def panels(session: Context) -> Sequence[Readout]:
     """Each probe as a panel with its plot."""
     probes = probes_of(session)
-    return [Readout(_heading(probe), (), probe.plot(probes.span), "probes.close") for probe in probes.all]
+    return [
+        Readout(_heading(probe), (), probe.plot(1.0 if probe.of_statics else probes.span), "probes.close")
+        for probe in probes.of(session)
+    ]
 
 
 def close(session: Context, pixel: Vector) -> None:
     """Take away the plot whose panel was pressed."""
     probes, pressed = probes_of(session), session.view.pressed
     closed = _names(pressed.item) if pressed is not None else ()
-    shown = zip(probes.all, panels(session), strict=True)
-    probes.all = [probe for probe, readout in shown if _names(readout) != closed]
+    shown = zip(probes.of(session), panels(session), strict=True)
+    gone = [probe for probe, readout in shown if _names(readout) == closed]
+    probes.all = [probe for probe in probes.all if probe not in gone]
 
 
 def _names(readout: Readout) -> tuple[str, ...]:
@@ -286,7 +325,7 @@ def record(session: Context, probe: Probe, until: float, samples: int) -> None:
     for number in range(samples):
         simulation.run_to(until * number / (samples - 1))
         simulation.observe()
-        probe.sample(session)
+        probe.sample(session, session.time)
         if simulation.halted:
             return
 
@@ -296,7 +335,7 @@ def plugin(app: App) -> None:
     app.system(Sampling)
     app.panel(panels)
     app.command("plot", run, marked("write or draw what a run does, against time or another quantity"))
-    live = ("simulation", "pause")
+    live = ("simulation", "pause", "statics")
     app.action("probes.plot", key="o", scenes=live, title=marked("plot the selection"), icon=ICON)(plot_next)
     app.action("probes.save", key="ctrl+e", scenes=live, title=marked("save plots as CSV and PNG"))(save)
     app.action("probes.close", while_drawing=True)(close)
@@ -304,6 +343,6 @@ def plugin(app: App) -> None:
         ("longer", "[", 2.0, marked("show a longer time in plots")),
         ("shorter", "]", 0.5, marked("show a shorter time in plots")),
     ):
-        app.action(f"probes.{name}", key=key, scenes=live, title=title, while_drawing=True)(
+        app.action(f"probes.{name}", key=key, scenes=live[:2], title=title, while_drawing=True)(
             lambda session, pixel, factor=factor: zoom(factor, session)  # type: ignore[misc]
         )

@@ -45,11 +45,11 @@ from pinjoint.systems.render.ui.lesson_card import compose_lesson
 from pinjoint.systems.render.ui.listing import compose_listing
 from pinjoint.systems.render.ui.overlays import (
     LIST,
-    draw_notice,
     draw_overlays,
     draw_references,
     draw_scale,
     place_scale,
+    put_notice,
     taken_by_heading,
 )
 from pinjoint.systems.render.ui.page import draw_page
@@ -112,14 +112,15 @@ def compose(
 def hits_at(model: Shown, view: View, theme: Theme, pixel: Vector) -> list[Hit]:
     """Where a press at a pixel does something in the picture of a stage, the topmost last.
 
-    The toolbar is composed only where it or what opens over it may lie, a model only where panels stand beside it.
+    The toolbar is composed only where it or what opens over it may lie, a model only where panels stand beside it or
+    a notice has a button.
     """
     if isinstance(model, Toolbar) and not (view.strip.contains(pixel) or view.help or view.menu):
         return []
     if isinstance(model, Listing) and not view.table_place.contains(pixel):
         return []
     paper, panels = Paper(view.pixel_ratio), view.readouts and view.legend and view.panels.contains(pixel)
-    if not isinstance(model, Model) or view.card is not None or panels:
+    if not isinstance(model, Model) or view.card is not None or panels or view.status.offer:
         paper.hits += compose(model, view, theme).hits
     else:
         put_controls(paper, model, view, theme)
@@ -174,7 +175,7 @@ def _composed(sheet: Sheet) -> Picture:
     for place in sheet.view.slider_places:
         sheet.occupancy.block(*place.box)
     put_readouts(paper, sheet, room)
-    overlays += draw_notice(sheet, room)
+    put_notice(paper, sheet, room)
     scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
     put_controls(paper, model, sheet.view, theme)
     preview = draw_preview(sheet)

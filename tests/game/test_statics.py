@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from pinjoint.components.model import Model
+from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.documents.document import document
 from pinjoint.documents.models import load
 from pinjoint.session import Session
@@ -15,6 +16,7 @@ from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import Start
+from pinjoint.systems.statics.vibration import Vibrations
 from tests.reference import bits
 
 GERBER: dict[str, Any] = {  # 3 m + 2 m to the hinge, 3 m, q = 12 kN/m
@@ -51,6 +53,17 @@ def alone(model: Model, theory: str) -> dict[str, Any]:
 def assert_is_solution(session: Session, theory: str) -> None:
     for name, wanted in alone(session.model, theory).items():
         np.testing.assert_array_equal(session.model.column(name), wanted, err_msg=name)
+
+
+def test_nothing_is_solved_in_the_midst_of_an_edit() -> None:
+    session = shown("portal")
+    before = session.document.statics.revision
+    session.particles["C"].position = (0.1, 3.0)
+    session.rods["CD"].stiffness = 2e6
+    session.model.delete([session.loads[0]])
+    assert session.document.statics.revision == before
+    assert session.rods["CD"].axial_force
+    assert session.document.statics.revision > before
 
 
 def test_a_gerber_beam_shows_what_a_hand_calculates() -> None:
@@ -205,3 +218,108 @@ def test_what_is_asked_of_load_steps_is_checked() -> None:
     session = Session.open("portal")
     with pytest.raises(ValueError, match=r"load steps are \[\]; give a list of one to"):
         session.model.settings.load_steps = []
+
+
+# --- by the canvas -----------------------------------------------------------------------------------------
+
+
+def in_statics(source: Any) -> Session:
+    session = Session.open(source)
+    session.resize(1280, 800)
+    if session.scene != "statics":
+        session.press("q")
+    session.update_view()
+    return session
+
+
+def test_a_slider_moves_the_last_load_step() -> None:
+    session = in_statics("portal")
+    before = session.rods["BC"].bending_moment
+    [place] = [place for place in session.view.slider_places if place.control.title == "load factor"]
+    left, right, y = place.track
+    session.press("drag", ((left + right) / 2.0, y))
+    for share in (0.6, 0.75):
+        session.press("drag to", (left + share * (right - left), y))
+    session.press("drop", (left + 0.75 * (right - left), y))
+    assert session.settings.load_steps == (1.5,)
+    assert session.rods["BC"].bending_moment == pytest.approx([1.5 * moment for moment in before], rel=1e-9)
+    session.undo()
+    assert session.settings.load_steps == (1.0,)
+    session.settings.load_steps = (1.0, 3.0)
+    session.update_view()
+    session.press("click", place.button.middle)
+    assert session.settings.load_steps == (1.0, 1.0)
+    session.press("q")
+    session.update_view()
+    assert "load factor" not in {place.control.title for place in session.view.slider_places}
+
+
+def test_a_button_beside_the_comparison_leads_to_the_other_theory() -> None:
+    session = in_statics("portal")
+    for offered, theory in (("exact geometry", EXACT), ("first order", FIRST_ORDER)):
+        assert session.view.status.offer == (offered, "next theory")
+        picture = compose(session.model, session.view, load_theme("light"))
+        [hit] = [hit for hit in picture.hits if hit.action == "next theory"]
+        session.press("click", hit.middle)
+        assert session.settings.theory == theory
+        assert session.view.status.offer is None or session.notice
+        session.notice = ""
+        session.update_view()
+        picture = compose(session.model, session.view, load_theme("light"))
+        assert offered in picture.texts  # the legend names it
+
+
+def test_what_has_no_equilibrium_moves_as_it_does_then() -> None:
+    session = in_statics("three_bar_plastic")
+    assert session.view.shape is None
+    session.settings.load_steps = (2.0,)
+    session.update_view()
+    shape = session.view.shape
+    assert shape is not None
+    assert shape.title == "A mechanism: nothing resists this motion"
+    moved = np.abs(shape.displacement)
+    assert moved.argmax() == moved.shape[1] * session.model.particles["D"].row + 1
+    session.press("q")
+    session.update_view()
+    assert session.view.shape is None
+
+
+def test_modes_are_of_the_unloaded_structure_in_first_order_and_about_the_equilibrium_else() -> None:
+    session = in_statics("portal")
+    titles = []
+    for _ in range(2):
+        while session.view.shape is None or not session.view.shape.title.startswith("Mode 1"):
+            session.press("b")
+            session.update_view()
+        titles.append(session.view.shape.title)
+        session.press("z")
+        session.update_view()
+        assert session.view.shape is None
+    loaded = Vibrations.of(session.model, session.statics("exact").final).hertz[0]
+    free = Vibrations.of(session.model).hertz[0]
+    assert titles == [f"Mode 1 of 3: {free:.4g} Hz", f"Mode 1 of 3 under load: {loaded:.4g} Hz"]
+
+
+def test_plots_go_from_no_load_to_the_last_step() -> None:
+    session = in_statics("portal")
+    session.settings.theory, session.settings.load_steps = EXACT, (20.0,)
+    session.press("o")
+    assert "Select a particle or a rod first" in session.notice
+    session.select(session.particles["B"])
+    session.press("o")
+    for last in (20.0, 10.0):  # after an edit, that of the new solution
+        session.settings.load_steps = (last,)
+        session.frame(0.0)
+        session.update_view()
+        [readout] = [one for one in session.view.readouts if one.plot is not None]
+        assert readout.plot is not None
+        [(_, factors, moved)] = readout.plot.curves
+        expected = [
+            100.0 * state.displacement[1, 0] for state in session.statics("exact", factors.tolist()).states
+        ]
+        assert (factors[0], factors[-1]) == (0.0, last)
+        assert moved == pytest.approx(expected, rel=1e-9, abs=1e-12)
+    assert session.particles["B"].displacement[0] == pytest.approx(expected[-1] / 100.0, rel=1e-12)
+    session.press("q")
+    session.update_view()
+    assert not session.view.readouts

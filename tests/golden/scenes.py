@@ -147,7 +147,7 @@ def _force_method_of_a_frame(window: Window) -> Session:
     """The virtual work of a portal whose right foot lets go sideways."""
     session = pressed(window, "k", "k", source="portal")
     session.click(*session.model.particles["D"].position)
-    for key in ("x", "k", "k", "k"):
+    for key in ("x", "k", "k", "k", "k"):
         session.press(key)
     return session
 

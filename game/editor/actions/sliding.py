@@ -11,7 +11,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.slider import Place, SetSliders
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.moving import Placing
-from pinjoint.editor.sliders import SCALE, control_of, scales
+from pinjoint.editor.sliders import LOAD, SCALE, control_of, loads, scales
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import actions_of
 
@@ -26,11 +26,20 @@ def _scale_to(context: Context, scale: float | None) -> None:
         settings.displacement_scale = scale
 
 
+def _load_by(context: Context, factor: float) -> None:
+    """Let the last load step of statics be this."""
+    settings = context.model.settings
+    settings.load_steps = (*settings.load_steps[:-1], factor)
+
+
 def _slide(context: Context, key: int, share: float) -> None:
     """Take a slider to a share of its length, as one edit. Raises FieldError, and Refusal if it was removed meanwhile."""
     model = context.model
     if key == SCALE:
         _scale_to(context, scales(context.scenes.active.scaled(context)[0]).value_at(share))
+        return
+    if key == LOAD:
+        _load_by(context, loads(model.settings).value_at(share))
         return
     if key >= len(model.sliders):
         raise Refusal("This slider has been removed.")
@@ -95,6 +104,8 @@ def _click_slider(context: Context, pixel: Vector) -> None:
         Slide(context, place, pixel)
     elif place.control.key == SCALE:
         _automatic(context, pixel)
+    elif place.control.key == LOAD:
+        _load_by(context, 1.0)
     else:
         model, key = context.model, place.control.key
         with model.transaction(marked("slider removed")):

@@ -9,6 +9,7 @@ from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.tags import DiagramShown
 from pinjoint.editor.context import Context, Scene
+from pinjoint.editor.sliders import slider_stack
 from pinjoint.systems.base import Phase, System
 
 
@@ -20,10 +21,12 @@ class Statics(Scene):
     targets = ("pause", "simulation", "properties", "save", "load", "force method")
 
     def enter(self, context: Context) -> None:
-        """Show the diagrams of all elements, unless some are shown."""
+        """Show the diagrams of all elements, unless some are shown, and all of the model above the sliders."""
         view = context.view
         if not (view.all_diagrams or context.model.any_tagged(DiagramShown)):
             view.all_diagrams, view.quantity = True, MOMENT
+        view.sliders = slider_stack(context)
+        view.follow(context.model, clear=True)  # of one slider more
 
     def hint(self, context: Context) -> str:
         if context.model.particles.count == 0:

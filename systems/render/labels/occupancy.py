@@ -14,7 +14,7 @@ from pinjoint.systems.render.typography import text_width
 
 FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover only in need
 _FAR = 1e6  # pixels
-_MANY_LINES = 4000
+_MANY_LINES, _FEW = 4000, 50  # lines of which a sample is noted; boxes, looked into one by one
 _SHARES = np.linspace(0.0, 1.0, 12)[:, None]  # of a diagonal, where cells are looked at
 _CELL = 3.0  # points: how finely the picture is divided into free and taken
 
@@ -87,8 +87,12 @@ class Occupancy:
 
     def are_free(self, cells: Rows, covering: int) -> Truths:
         """For each box of `cells` (n, 4), whether nothing takes any and no line in it is stronger than `covering`."""
-        left, top, right, bottom = cells.T
         blocked, (height, width) = self.taken | (self.lined > covering), self.taken.shape
+        if len(cells) < _FEW:
+            return np.array(
+                [not blocked[top:low, left:right].any() for left, top, right, low in cells.tolist()], bool
+            )
+        left, top, right, bottom = cells.T
         before = np.zeros(
             (height + 1, width + 1), dtype=np.int32
         )  # how many are above and to the left of each corner

@@ -67,7 +67,7 @@ def gaps(lengths: Values, unit: float) -> Values:
 
 def draw_distributed_forces(sheet: Sheet) -> None:
     """A row of arrows along each rod with a distributed force, on the side from which it pushes, and its value."""
-    force = sheet.model.rods.distributed_force
+    force = sheet.model.rods.distributed_force * sheet.model.share
     loaded = np.flatnonzero(force[sheet.rods].any(axis=1))
     if not 0 < len(loaded) <= MOST:
         return

@@ -14,6 +14,7 @@ from pinjoint.components.bent import farthest
 from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
+from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES, THEORIES
 from pinjoint.components.view import BETWEEN, LEAST_MODEL
 from pinjoint.systems.render import marks
 from pinjoint.systems.render.labels.occupancy import STRONG
@@ -26,6 +27,7 @@ from pinjoint.systems.render.model.utilisation import scale_bar
 from pinjoint.systems.render.symbols import dashed
 from pinjoint.systems.render.theme import Colour, Theme, faded
 from pinjoint.systems.render.typography import ALL, font_size, line_height, text_width, wrapped
+from pinjoint.systems.render.ui.buttons import button
 from pinjoint.systems.render.ui.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Text, icon
 
 EDGE = 14.0  # points between overlays and the edges of the viewport
@@ -121,7 +123,7 @@ def taken_by_heading(sheet: Sheet) -> float:
     """Pixels that the heading of a picture takes at the top, with the legend of diagrams of rods that bend."""
     if not sheet.is_frame:
         return 0.0
-    explained = EXPLAINED[sheet.view.quantity] if sheet.view.legend else ()
+    explained = (*EXPLAINED[sheet.view.quantity], *_theory(sheet)) if sheet.view.legend else ()
     return heading_height(sheet.view.heading, sheet.viewport.width, sheet.unit, sheet.theme, explained)
 
 
@@ -165,15 +167,16 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
     return paper.marks, max(top, upper + 8.0 * u + high)
 
 
-def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
-    """The problem or the notice, wrapped, at the bottom or the top, in the middle or aside, where it hides least."""
+def put_notice(paper: Paper, sheet: Sheet, ends: tuple[float, float]) -> None:
+    """The problem or the notice, wrapped, with its button, at the bottom or the top, in the middle or aside, where it hides
+    least."""
     status, (top, bottom) = sheet.view.status, ends
     said = status.problem or status.notice
     if not said:
-        return []
+        return
     u, theme = sheet.unit, sheet.theme
-    ink, paper = (theme.problem, theme.problem_panel) if status.problem else (theme.text, theme.panel)
-    sign = Drawn(partial(_exclaimed, "!" if status.problem else "i", ink, paper), 18.0, 18.2)
+    ink, ground = (theme.problem, theme.problem_panel) if status.problem else (theme.text, theme.panel)
+    sign = Drawn(partial(_exclaimed, "!" if status.problem else "i", ink, ground), 18.0, 18.2)
     for v in (sheet.view.room, sheet.viewport):  # beside the panels, unless it is long
         room = min(v.width - 2 * EDGE * u, 640.0 * u)
         most = max(int((min(bottom, v.bottom) - top - 60.0 * u) / line_height(sheet.font(13.0))), 1)
@@ -184,16 +187,26 @@ def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
         text_width(line, sheet.font(13.0))
         for line in wrapped(said, room - _AROUND_NOTICE * u, sheet.font(13.0))
     )
-    inside = Row((sign, text), 10.0, (12.0, 10.0, 10.0), top=True)
-    whole = Plate(inside, paper, ink if status.problem else theme.line, radius=6.0)
-    width = widest + _AROUND_NOTICE * u
+    offer = []
+    if status.offer is not None and not status.problem:
+        title, action = status.offer
+        offer = [
+            button(
+                Row((Text(title, 12.0, theme.focus, "semibold"),), around=(8.0, 1.0, 1.0)),
+                action,
+                theme,
+                stands_out=True,
+            )
+        ]
+    inside = Row((sign, text, *offer), 10.0, (12.0, 10.0, 10.0), top=True)
+    whole = Plate(inside, ground, ink if status.problem else theme.line, radius=6.0)
+    width = widest + _AROUND_NOTICE * u + sum(one.width(u) + 10.0 * u for one in offer)
     height = whole.height(u, width)
     places = _for_notice(sheet, v, width, height, (top, min(bottom, v.bottom)))
     left, upper = min(places, key=lambda at: _hidden(sheet, at, width, height))
     sheet.occupancy.block(left, upper, width, height)
-    placed = Paper(u)
-    placed.put(whole, Rectangle(left, upper, width, height))
-    return [*placed.marks, *_progress(sheet, left + 12.0 * u, upper + height - 5.0 * u, width - 24.0 * u)]
+    paper.put(whole, Rectangle(left, upper, width, height))
+    paper.marks += _progress(sheet, left + 12.0 * u, upper + height - 5.0 * u, width - 24.0 * u)
 
 
 def _exclaimed(sign: str, ink: Colour, paper: Colour, place: Rectangle, u: float) -> list[Mark]:
@@ -252,6 +265,7 @@ MEANINGS = {
     "hinge": marked("hinge"),
     "ghost": marked("undeformed"),
     "deflected": marked("deflected"),
+    **NAMES,
 }
 _SCALES = ("utilisation", "axial utilisation")
 UNITS = {
@@ -282,7 +296,7 @@ def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark],
     They stand beside the heading, which ends at `right`, if one or two rows have room there, else below it.
     """
     v, u, theme = sheet.viewport, sheet.unit, sheet.theme
-    meanings = meanings_of(sheet.legend) if sheet.view.legend else {}
+    meanings = meanings_of([*sheet.legend, *_theory(sheet)]) if sheet.view.legend and sheet.legend else {}
     if not meanings or v.width < LEAST_MODEL * u:
         return [], heading_end
     plates, beside = _arranged(meanings, theme, v.width, right - v.left, u)
@@ -296,6 +310,11 @@ def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark],
     return paper.marks, max(top - 4.0 * u, heading_end)
 
 
+def _theory(sheet: Sheet) -> tuple[str, ...]:
+    """The theory of what is shown in statics."""
+    return () if sheet.model.solution is None else (FIRST_ORDER if sheet.model.first_order else EXACT,)
+
+
 def _arranged(
     meanings: dict[str, str], theme: Theme, width: float, heading: float, u: float
 ) -> tuple[list[Plate], bool]:
@@ -303,12 +322,13 @@ def _arranged(
     entries = [
         Row(
             (
-                Drawn(partial(_swatch, name, theme), _BAR_WIDTH if name in _SCALES else 16.0),
-                Text(said, 11.0, theme.text),
+                *([] if name in THEORIES else [Drawn(partial(_swatch, name, theme), wide)]),
+                Text(said, 11.0, theme.text, "semibold" if name in THEORIES else "regular"),
             ),
             6.0,
         )
         for name, said in meanings.items()
+        for wide in (_BAR_WIDTH if name in _SCALES else 16.0,)
     ]
     room = width - heading - (_ABOVE + _BETWEEN + 2 * _PAD) * u
     beside = max(entry.width(u) for entry in entries) <= room

@@ -10,7 +10,7 @@ from pinjoint.systems.render.marks import Mark, Panel
 from pinjoint.systems.render.model.sheet import Sheet
 from pinjoint.systems.render.typography import font_size, line_height, text_width, wrapped
 from pinjoint.systems.render.ui.layout import Column, Paper, Row, Text
-from pinjoint.systems.render.ui.overlays import BAR, EDGE, draw_notice, draw_overlays
+from pinjoint.systems.render.ui.overlays import BAR, EDGE, draw_overlays, put_notice
 
 _BLOCKS, _AROUND = 34.0, 6.0  # points: between blocks of a table, above and below all
 _SIZE = 12.0  # points
@@ -21,7 +21,7 @@ _SAMPLE = 200  # rows, enough to know how wide columns are
 def draw_page(sheet: Sheet) -> list[Mark]:
     """Lines, a table with as many rows as there is room for from the one scrolled to, and the status line below them."""
     overlays, room = draw_overlays(sheet)
-    overlays += draw_notice(sheet, room)
+    put_notice(Paper(sheet.unit, None, overlays), sheet, room)
     page, v, u, theme = sheet.view.page, sheet.viewport, sheet.unit, sheet.theme
     if page is None or not (page.lines or page.table):
         return overlays

@@ -52,15 +52,15 @@ def draw_pointed(sheet: Sheet) -> list[Mark]:
 def _free_place(sheet: Sheet, handle: Handle, size: Points) -> Rectangle | None:
     """The place nearest to the pointer where a box covers no value, name or panel; near by one where it covers no line."""
     (low, high), pointer, u = sheet.viewport.corners, sheet.view.pointer or sheet.view.camera.middle, sheet.unit
-    x, y = (np.arange(low[axis], high[axis] - size[axis], _STEP * u) for axis in (0, 1))
-    corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    away = np.maximum(np.maximum(corners - pointer, pointer - corners - size), 0.0)
-    distance = np.hypot(*away.T)
-    corners, distance = corners[distance >= _NEAR * u], distance[distance >= _NEAR * u]
-    cells = sheet.occupancy.cells_of(corners, np.broadcast_to(size, corners.shape))
+    sides = [(np.arange(low[k], high[k] - size[k], _STEP * u), pointer[k], size[k]) for k in (0, 1)]
     start, end, reach = _outline(sheet, handle)
     for covered, farthest in ((0, _BESIDE * u), (STRONG, np.inf)):
-        free = np.flatnonzero(sheet.occupancy.are_free(cells, covered) & (distance <= farthest))
+        x, y = (side[(side >= at - wide - farthest) & (side <= at + farthest)] for side, at, wide in sides)
+        corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        distance = np.hypot(*np.maximum(np.maximum(corners - pointer, pointer - corners - size), 0.0).T)
+        near = np.flatnonzero((distance >= _NEAR * u) & (distance <= farthest))
+        cells = sheet.occupancy.cells_of(corners[near], np.broadcast_to(size, (len(near), 2)))
+        free = near[sheet.occupancy.are_free(cells, covered)]
         for index in free[np.argsort(distance[free], kind="stable")].tolist():
             corner = corners[index]
             if not len(clip_segments(start, end, corner - reach, corner + size + reach)[2]):

@@ -90,6 +90,8 @@ def in_scene(scene: str) -> Session:
     }
     if scene in keys:
         session.press(keys[scene])
+    if scene == STATICS:  # which has one slider more, that nothing is to lie under
+        session.point(*session.particles["B"].position)
     if scene == TABLE:
         session.view.pointer = session.view.table_place.middle
     assert scene in (MENU, TABLE) or session.scene == scene
@@ -210,6 +212,7 @@ PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
     ("paste", SIMULATION): _copied,
     ("fit", FORCE_METHOD): lambda session: session.press("drag middle", (30.0, 30.0)),
     ("fit", PAUSE): lambda session: session.press("drag middle", (30.0, 30.0)),
+    ("fit", STATICS): lambda session: session.press("drag middle", (30.0, 30.0)),
     ("fit", SIMULATION): lambda session: session.press("drag middle", (30.0, 30.0)),
     ("natural pace", PAUSE): lambda session: session.press("+"),
     ("natural pace", SIMULATION): lambda session: session.press("+"),
@@ -260,6 +263,7 @@ def seen(session: Session) -> Any:
     shown: list[Any] = [session.scene, contents(session.model), session.selected, repr(session.view)]
     shown += [
         session.model.tagged(DiagramShown),
+        session.settings.original_diagrams,
         session.document.live.clock.factor,
         session.view.tool,
         repr(session.gesture),

@@ -194,7 +194,8 @@ def test_a_moment_within_a_step_is_found_from_another_one_of_that_step(made: Mod
     shown, found = Session.open(made), Session.open(made)
     for number in range(1, 60):
         _run_to(shown, 0.01 * number)
-        found.go_to(*shown.simulation.moment)
+        with found.running() as simulation:
+            simulation.go_to(*shown.simulation.moment)
         assert (found.time, found.simulation.moment) == (shown.time, shown.simulation.moment)
     _assert_same(shown, found)
 
