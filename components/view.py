@@ -399,34 +399,27 @@ class View:
         return apart
 
     @property
-    def beside_strip(self) -> Viewport:
-        """All of the viewport but the toolbar."""
-        window, taken = self.camera.viewport, self.strip.width
-        return replace(window, left=window.left + taken, width=window.width - taken)
-
-    @property
     def table_place(self) -> Viewport:
         """Where a table of results stands: at the right where the model keeps enough, else below; of no size without one."""
-        whole, wide = self.beside_strip, round(self.table * self.pixel_ratio)
-        if wide == 0 or whole.width >= wide + LEAST_BESIDE * self.pixel_ratio:
-            return replace(whole, left=whole.left + whole.width - wide, width=wide)
-        high = round(TABLE_SHARE * whole.height)
-        return replace(whole, top=whole.top + whole.height - high, height=high)
+        window, taken, wide = self.camera.viewport, self.strip.width, round(self.table * self.pixel_ratio)
+        if wide == 0 or window.width >= taken + wide + LEAST_BESIDE * self.pixel_ratio:
+            return Viewport(window.left + window.width - wide, window.top, wide, window.height)
+        high = round(TABLE_SHARE * window.height)
+        return Viewport(window.left + taken, window.top + window.height - high, window.width - taken, high)
 
     @property
     def canvas(self) -> Viewport:
         """The part of the viewport that is left for the model."""
-        whole, table = self.beside_strip, self.table_place
-        left, right, bottom = whole.left, whole.left + whole.width, whole.top + whole.height
-        if table.top > whole.top:
-            bottom = table.top
-        else:
-            right = table.left
+        window, taken = self.camera.viewport, self.strip.width
+        left, right, bottom = window.left + taken, window.left + window.width, window.top + window.height
+        if self.table:
+            table = self.table_place
+            right, bottom = (table.left, bottom) if table.top == window.top else (right, table.top)
         if self.aside is not None and self.aside.left > left:
             right = self.aside.left
         elif self.aside is not None:
             left = self.aside.left + self.aside.width
-        return Viewport(left, whole.top, right - left, bottom - whole.top)
+        return Viewport(left, window.top, right - left, bottom - window.top)
 
     def beside(self, *, at_left: bool) -> Viewport | None:
         """Where boxes to type into stand beside the model; None where they would leave too little of it."""
