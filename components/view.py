@@ -15,7 +15,7 @@ from pinjoint.components.bent import AXIAL, Parts, drawn_scale, middles
 from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends
+from pinjoint.components.rod import Rod, bends
 from pinjoint.components.slider import ARROW, SUPPORT, Place, SliderStack
 from pinjoint.components.toolbar import Menu, Tool, Toolbar
 
@@ -169,6 +169,19 @@ class Readout:
 
 
 @dataclass(frozen=True)
+class Pin:
+    """A place on a rod, so far from its start (m), whose numbers stay while that rod alone is selected.
+
+    typed: the distance as a person types it (cm). told: the numbers; None while they are not to be seen.
+    """
+
+    rod: Rod
+    distance: float
+    typed: str = ""
+    told: Readout | None = None
+
+
+@dataclass(frozen=True)
 class Card:
     """A task of a lesson as it stands, for drawing and clicking.
 
@@ -249,7 +262,7 @@ class View:
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     convention: of the force method. has_scale: a length to scale, and notes about what is hidden, are shown.
     advises: they may say what to do, as in a window.
-    pointed: what is said of the element under the pointer, beside it.
+    pointed: what is said of the element under the pointer, beside it. pin: the place of which numbers stay.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption. swing: the share of it, from
     1 to −1, that is drawn now.
     names: all elements have their names, not only few.
@@ -302,6 +315,7 @@ class View:
     shape: Shape | None = None
     swing: float = 1.0
     pointed: Readout | None = None
+    pin: Pin | None = None
     fitted: bool = False
     shares: bool = False
     table: float = 0.0
@@ -385,34 +399,27 @@ class View:
         return apart
 
     @property
-    def beside_strip(self) -> Viewport:
-        """All of the viewport but the toolbar."""
-        window, taken = self.camera.viewport, self.strip.width
-        return replace(window, left=window.left + taken, width=window.width - taken)
-
-    @property
     def table_place(self) -> Viewport:
         """Where a table of results stands: at the right where the model keeps enough, else below; of no size without one."""
-        whole, wide = self.beside_strip, round(self.table * self.pixel_ratio)
-        if wide == 0 or whole.width >= wide + LEAST_BESIDE * self.pixel_ratio:
-            return replace(whole, left=whole.left + whole.width - wide, width=wide)
-        high = round(TABLE_SHARE * whole.height)
-        return replace(whole, top=whole.top + whole.height - high, height=high)
+        window, taken, wide = self.camera.viewport, self.strip.width, round(self.table * self.pixel_ratio)
+        if wide == 0 or window.width >= taken + wide + LEAST_BESIDE * self.pixel_ratio:
+            return Viewport(window.left + window.width - wide, window.top, wide, window.height)
+        high = round(TABLE_SHARE * window.height)
+        return Viewport(window.left + taken, window.top + window.height - high, window.width - taken, high)
 
     @property
     def canvas(self) -> Viewport:
         """The part of the viewport that is left for the model."""
-        whole, table = self.beside_strip, self.table_place
-        left, right, bottom = whole.left, whole.left + whole.width, whole.top + whole.height
-        if table.top > whole.top:
-            bottom = table.top
-        else:
-            right = table.left
+        window, taken = self.camera.viewport, self.strip.width
+        left, right, bottom = window.left + taken, window.left + window.width, window.top + window.height
+        if self.table:
+            table = self.table_place
+            right, bottom = (table.left, bottom) if table.top == window.top else (right, table.top)
         if self.aside is not None and self.aside.left > left:
             right = self.aside.left
         elif self.aside is not None:
             left = self.aside.left + self.aside.width
-        return Viewport(left, whole.top, right - left, bottom - whole.top)
+        return Viewport(left, window.top, right - left, bottom - window.top)
 
     def beside(self, *, at_left: bool) -> Viewport | None:
         """Where boxes to type into stand beside the model; None where they would leave too little of it."""

@@ -425,22 +425,23 @@ class World:
 
     @contextmanager
     def transaction(self, title: str) -> Iterator[None]:
-        """Make all commands inside one entry of the log; if one raises, none of them happened.
+        """Make all commands inside one entry of the log; if one raises, none of them happened. Inside, the state is shown.
 
         title: said by `tr`, or marked: it is shown in the language that is present then.
         """
         inverses: list[Command] = []
         outer, self._open = self._open, inverses
-        try:
-            yield
-        except BaseException:
-            for inverse in reversed(inverses):
-                self.apply(inverse)
+        with self.own_state():
+            try:
+                yield
+            except BaseException:
+                for inverse in reversed(inverses):
+                    self.apply(inverse)
+                self._open = outer
+                raise
             self._open = outer
-            raise
-        self._open = outer
-        if inverses:
-            self._report(Group(tuple(reversed(inverses)), title))
+            if inverses:
+                self._report(Group(tuple(reversed(inverses)), title))
 
     def apply(self, command: Command) -> Command:
         """Apply a command without telling the log; returns its exact inverse."""

@@ -71,7 +71,7 @@ def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list
             rod=begun(name),
         )
     ends, last = rod.ends, len(lengths) - 1
-    with model.own_state(), model.transaction(tr("divide {rods}", rods=name)):
+    with model.transaction(tr("divide {rods}", rods=name)):
         between = _particles(model, rod, shares)
         chain = [ends[0], *between, ends[1]]
         pairs = [(first.row, second.row) for first, second in itertools.pairwise(chain)]

@@ -61,7 +61,7 @@ def join(model: Model, first: Particle, second: Particle, *, rigid: bool = False
     rigid: a member with rigid ends, like the newest one that bends, else of the usual section. Raises Refusal if it
     cannot be.
     """
-    with model.own_state(), model.transaction(tr("new {noun}", noun=tr(Rod.noun))):
+    with model.transaction(tr("new {noun}", noun=tr(Rod.noun))):
         check_ends(model, first, second)
         moved = first.displacement != second.displacement
         [rod] = model.create(

@@ -17,6 +17,7 @@ from pinjoint.systems.statics.factor import is_stable, regular, softest
 from pinjoint.systems.statics.follow import LARGEST_MOVE, NEWTON_ITERATIONS, SMALLEST_SHARE, Path, Point
 
 STEPS = 4000  # at most
+STALLED = 50  # steps that together go less far than one may: it is caught where its rods turn over
 STEP_CONVERGED = 1e-7  # of the force at its start
 LARGEST_PENALTY = 1e9
 NUDGE = 1e-3  # of a rod's length: how far to push off an unstable equilibrium
@@ -34,8 +35,12 @@ def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STE
     structure, point = path.structure, start
     if nudge is not None:
         point = _nudged(path, point, nudge)
-    penalty = 0.0
-    for _ in range(steps):
+    penalty, before = 0.0, point
+    for step in range(steps):
+        if step % STALLED == STALLED - 1:
+            if _travel(structure, before, point.displacement) < 1.0:
+                break
+            before = point
         residual = structure.gather(path.load(point.t) - structure.internal(point.response))
         if is_stable(structure, point.response):
             rested = path.correct(point, point.displacement, point.t, None)

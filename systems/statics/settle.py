@@ -38,10 +38,7 @@ from pinjoint.systems.statics.relax import BALANCED
 from pinjoint.systems.statics.state import NEUTRAL, STABLE, UNSTABLE, Start, StaticState
 from pinjoint.systems.statics.theory import FirstOrder
 
-LARGEST_GROWTH, SMALLEST_GROWTH = (
-    1 / 16,
-    1e-6,
-)  # shares by which lack of fit and warmth grow where rods yield by them
+LARGEST_GROWTH, SMALLEST_GROWTH = 1 / 16, 1 / 1024  # shares by which lack of fit grows where rods yield by it
 MOST_TOLD = 3  # events in an account besides the message
 TOLD = (
     "free body",
@@ -207,19 +204,26 @@ class _Settling:
     def _grown(self, start: Start) -> Point | None:
         """The equilibrium without load once lack of fit, warmth and moved supports have grown; None if there is none.
 
-        Joints move as rods yield on the way: with all joints held at first, rods would yield that never do.
+        Joints move as rods yield on the way: with all joints held at first, rods would yield that never do. Where a part
+        is too large for that, too, it is begun from where joints would be if no rod yielded.
         """
+        limitless = np.full(len(self.structure.ends), np.inf)
+        elastic = replace(self.structure, tension_limit=limitless, compression_limit=limitless)
         moved, share, step = self.point.displacement, 0.0, LARGEST_GROWTH
         point = Point(0.0 * moved, start.plastic_strain, 0.0, self.point.response, 0.0)
         while share < 1.0 and step > SMALLEST_GROWTH:
             further = min(share + step, 1.0)
-            path = Path(self.structure.grown(further), self._nothing, self._nothing)
+            path, unyielding = (
+                Path(of.grown(further), self._nothing, self._nothing) for of in (self.structure, elastic)
+            )
             known = np.where(self.structure.unknown, point.displacement, further * moved)
             found = path.correct(point, known, 0.0, None)
+            if found is None and (near := unyielding.correct(point, known, 0.0, None)) is not None:
+                found = path.correct(point, near.displacement, 0.0, None)
             if found is None:
                 step *= 0.5
             else:
-                point, share = found, further
+                point, share, step = found, further, min(2.0 * step, LARGEST_GROWTH)
         return point if share == 1.0 else None
 
     @cached_property

@@ -55,6 +55,17 @@ def assert_is_solution(session: Session, theory: str) -> None:
         np.testing.assert_array_equal(session.model.column(name), wanted, err_msg=name)
 
 
+def test_nothing_is_solved_in_the_midst_of_an_edit() -> None:
+    session = shown("portal")
+    before = session.document.statics.revision
+    session.particles["C"].position = (0.1, 3.0)
+    session.rods["CD"].stiffness = 2e6
+    session.model.delete([session.loads[0]])
+    assert session.document.statics.revision == before
+    assert session.rods["CD"].axial_force
+    assert session.document.statics.revision > before
+
+
 def test_a_gerber_beam_shows_what_a_hand_calculates() -> None:
     """M_B = −(q·2²/2 + 2·q·3/2) = −60 kN·m; H carries q·3/2 = 18 kN; A: 18 − 60/3 = −2 kN."""
     session = shown(GERBER)

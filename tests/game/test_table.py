@@ -170,7 +170,8 @@ def test_it_covers_no_structure_and_gives_its_room_back(name: str, size: tuple[i
     x, y = session.view.camera.to_pixels(drawn_positions(session.model)).T
     assert ((x > canvas.left) & (x < canvas.right) & (y > canvas.top) & (y < canvas.bottom)).all()
     assert (
-        place.width * place.height + canvas.width * canvas.height == session.view.beside_strip.width * size[1]
+        place.width * place.height + canvas.width * canvas.height
+        == (size[0] - session.view.strip.width) * size[1]
     )
     assert len(session.lister.listing.rows) >= 5
     push(session, "toggle table")

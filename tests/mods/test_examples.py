@@ -66,7 +66,7 @@ def test_a_stiffening_rod_rests_where_its_law_says(unloaded: None) -> None:
 
 def test_the_count_down_has_keys_of_its_own_and_ends_in_the_simulation(unloaded: None) -> None:
     session = Session.open("pendulum", mods=[FOLDER / "countdown"])
-    session.press("n")
+    session.press("y")
     assert session.scene == "count down"
     session.frame(1.0)
     assert session.view.heading == "2 …"
@@ -75,11 +75,11 @@ def test_the_count_down_has_keys_of_its_own_and_ends_in_the_simulation(unloaded:
     assert session.view.heading == "3 …"
     session.press("escape")
     assert session.scene == "pause"
-    session.press("n")
+    session.press("y")
     session.press("space")
     assert session.scene == "simulation"
     session.press("escape")
-    session.press("n")
+    session.press("y")
     for _ in range(4):
         session.frame(1.0)
     assert session.scene == "simulation"
@@ -141,7 +141,7 @@ def test_magnets_reach_discs_that_lie_on_the_ground(unloaded: None) -> None:
 
 def test_one_can_point_and_click_in_the_scene_of_a_mod(unloaded: None) -> None:
     session = Session.open("pendulum", mods=[FOLDER / "countdown"])
-    session.press("n")
+    session.press("y")
     pixel = session.point(0.5, 0.25)
     assert session.focus[1].pointer == pixel
     session.click(0.5, 0.25)

@@ -72,6 +72,7 @@ KINDS = {  # what `python -m tests.properties.fuzz` can try: modules with explor
     "windows": "tests.properties.windows",
     "damage": "tests.properties.damage",
     "models": "tests.properties.hostile_models",
+    "statics": "tests.properties.solved_edits",
 }
 MOST_ELEMENTS = 150  # beyond this the person deletes before going on, so that everything stays quick
 

@@ -1,10 +1,11 @@
 """Some of everything that `python -m tests.properties.fuzz` tries, which has as many as one likes."""
 
+from collections import Counter
 from collections.abc import Callable
 
 import pytest
 
-from tests.properties import damage
+from tests.properties import damage, solved_edits
 from tests.properties.bounds import fuzzing
 
 PERSONS = "editing", "windows", "--actions"
@@ -19,3 +20,12 @@ def test_anything_that_a_person_does_interpreted(fresh_process: Callable[..., st
 def test_any_damage_to_a_file(first: int) -> None:
     for seed in range(first, first + 5):
         damage.attempt(seed)
+
+
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("seed", [2, 3, 5])
+def test_any_edits_in_statics(seed: int) -> None:
+    """3: a rod a tenth too long that yields, 5: a structure with a slack cable that falls in on itself, took minutes."""
+    seen = Counter[str]()
+    solved_edits.attempt(seed, 60, seen)
+    assert seen["stable"] > 20

@@ -97,8 +97,8 @@ class Found:
     end_rotation: dict[str, np.ndarray]
 
 
-def solve(document: Document) -> Found:
-    """The answer of linear theory to a model's document, with settlements of supports and clamps."""
+def assembled(document: Document) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[Member]]:
+    """The stiffness of all coordinates, the loads on them, which are held, which turn nothing, and the members."""
     particles, rods = document["particles"], document["rods"]
     row = {particle["name"]: i for i, particle in enumerate(particles)}
     members = []
@@ -117,15 +117,21 @@ def solve(document: Document) -> Found:
     held = np.array(
         [[*p.get("fixed", (False, False)), p.get("fixed_rotation", False)] for p in particles]
     ).ravel()
-    placed = np.array([[*p.get("displacement", (0.0, 0.0)), p.get("rotation", 0.0)] for p in particles]).ravel()
     rigid = {place for of in members for end in (2, 5) if end not in of.hinged for place in [of.places[end]]}
     still = np.array([i % 3 == 2 and i not in rigid for i in range(size)])
+    return matrix, load + applied, held, still, members
+
+
+def solve(document: Document) -> Found:
+    """The answer of linear theory to a model's document, with settlements of supports and clamps."""
+    particles, rods = document["particles"], document["rods"]
+    matrix, load, held, still, members = assembled(document)
     free = ~held & ~still
-    moved = np.where(held & ~still, placed, 0.0)
-    right = (load + applied - matrix @ moved)[free]
-    moved[free] = np.linalg.solve(matrix[np.ix_(free, free)], right)
-    reaction = np.where(held, matrix @ moved - load - applied, 0.0).reshape(-1, 3)
-    names = list(row)
+    placed = [[*p.get("displacement", (0.0, 0.0)), p.get("rotation", 0.0)] for p in particles]
+    moved = np.where(held & ~still, np.array(placed).ravel(), 0.0)
+    moved[free] = np.linalg.solve(matrix[np.ix_(free, free)], (load - matrix @ moved)[free])
+    reaction = np.where(held, matrix @ moved - load, 0.0).reshape(-1, 3)
+    names = [particle["name"] for particle in particles]
     of_rods = {rod["name"]: end_forces(of, moved) for rod, of in zip(rods, members, strict=True)}
     return Found(
         displacement={name: moved.reshape(-1, 3)[i, :2] for i, name in enumerate(names)},

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
+from pinjoint.components.theory import THEORIES
 from pinjoint.documents import models
 from pinjoint.systems.statics.path import Curve, Goal
 from pinjoint.systems.statics.second_order import SecondOrder
@@ -30,6 +31,32 @@ Array = np.ndarray
 
 def first_order(document: Document, *factors: float) -> Any:
     return settle(models.load(document), factors or (1.0,), "first-order")
+
+
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize("theory", THEORIES)
+def test_a_ring_is_tightened_by_a_rod_far_too_short_for_it(theory: str) -> None:
+    """By a tenth, hundreds of times the strain at which it yields: that took a million steps."""
+    places = {"A": (0, 0), "B": (2, 0), "C": (4, 0), "D": (-0.18, 1.84), "E": (2, 2), "F": (4, 2)}
+    bent = [
+        {"name": name, "between": list(name), "bending_stiffness": 8360.0} for name in ("AB", "BC", "AD", "CF")
+    ]
+    strong = {
+        "rest_length": 2.0,
+        "tensile_strength": 60.0,
+        "compressive_strength": 60.0,
+        "bending_stiffness": 8360.0,
+    }
+    document = {
+        "format": "pinjoint model",
+        "version": 1,
+        "particles": [{"name": name, "position": list(place)} for name, place in places.items()],
+        "rods": [*bent, {"name": "DE", "between": ["D", "E"], **strong}, {"name": "EF", "between": ["E", "F"]}],
+    }
+    found = settle(models.load(document), theory=theory)
+    assert found.status == "neutral equilibrium"
+    assert found.final.axial_force[4] == pytest.approx(60.0, rel=1e-9)
+    assert 0.0 < found.final.plastic_strain[4] < 0.1
 
 
 # --- elastic ----------------------------------------------------------------------------------------------

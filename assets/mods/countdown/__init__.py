@@ -46,7 +46,7 @@ def plugin(app: App) -> None:
     app.scene(CountDown)
     app.system(Ticking)
     here = ("count down",)
-    start = app.action("countdown.start", key="n", scenes=("pause",), title="count down, then run")
+    start = app.action("countdown.start", key="y", scenes=("pause",), title="count down, then run")
     start(lambda session, pixel: session.scenes.request("count down"))
     app.action("countdown.more", key="+", scenes=here, title="a second more")(more)
     app.key("space", "toggle run", here, "begin now")

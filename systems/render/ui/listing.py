@@ -31,7 +31,7 @@ def compose_listing(listing: Listing, view: View, theme: Theme) -> Picture:
     """A listing as marks in its part of the viewport."""
     v, paper = view.table_place, Paper(view.pixel_ratio, view.pointer)
     u, thin = paper.unit, max(round(paper.unit), 1)
-    below = v.top > view.beside_strip.top
+    below = v.top > view.camera.viewport.top
     paper.marks.append(Panel(v.left, v.top, *((v.width, thin) if below else (thin, v.height)), 0.0, theme.line))
     size, gap, widths = _widths(listing, v.width, u)
     ink = pale(theme.text, theme.panel) if view.provisional else theme.text

@@ -1,0 +1,269 @@
+"""Somebody who edits in statics: `python -m tests.properties.fuzz statics --count 50 --seed 1 --actions 200`.
+
+After every edit, undo and redo all columns that are shown are, to the bit, those of the document solved in a fresh model. A
+dense program of the textbook, which shares nothing with ours, decides whether the structure is stable, and gives the numbers
+of what is elastic in first order; in exact theory all forces balance as derivatives of the energy.
+"""
+
+import random
+import traceback
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from pinjoint import Session
+from pinjoint.components.field import FieldError
+from pinjoint.components.load import Load
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, nodes
+from pinjoint.documents.document import document
+from pinjoint.documents.models import load
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.state import Start
+from tests.reference import frame_theory, frames
+
+BASES = (
+    *("portal", "gerber_beam", "two_storey_frame", "vierendeel", "three_hinged_arch", "braced_portal"),
+    *("three_bar_plastic", "hyperstatic", "isostatic"),
+)
+STEPS = ([1.0], [1.0], [1.0, 0.5], [0.5, 1.0], [1.0, 0.0])
+WITHIN, SINGULAR, STABLE = 1e-8, 1e-13, 1e-9  # of the largest number; eigenvalues, of the largest
+MOST_RODS = 60
+
+Lot = random.Random
+Edit = Callable[[Session, Lot, Any, Any], Any]  # of a particle, or of a rod
+
+
+def _moved(session: Session, lot: Lot, at: Any, rod: Any) -> None:
+    x, y = at.position
+    at.position = x + lot.uniform(-0.2, 0.2), y + lot.uniform(-0.2, 0.2)
+
+
+def _settled(session: Session, lot: Lot, at: Any, rod: Any) -> None:
+    at.displacement = tuple(lot.uniform(-0.01, 0.01) if held else 0.0 for held in at.fixed)
+
+
+def _new_particle(session: Session, lot: Lot, at: Any, rod: Any) -> None:
+    [made] = session.model.create(Particle, position=[(lot.uniform(0.0, 6.0), lot.uniform(0.0, 6.0))])
+    for row in lot.sample(range(made.row), min(2, made.row)):
+        session.model.create(Rod, between=[(made.row, row)])
+
+
+def _new_rod(session: Session, lot: Lot, at: Any, rod: Any) -> None:
+    ends = tuple(lot.sample(range(session.particles.count), 2))
+    session.model.create(Rod, between=[ends], prescribed_bending_stiffness=[lot.choice([None, 5000.0])])
+
+
+def _strong(session: Session, lot: Lot, at: Any, rod: Any) -> None:
+    rod.tensile_strength = rod.compressive_strength = lot.choice([None, None, 200.0, 60.0])
+
+
+EDITS: dict[str, Edit] = {
+    "force": lambda s, lot, at, rod: setattr(at, "force", (lot.uniform(-50.0, 50.0), lot.uniform(-50.0, 50.0))),
+    "moment": lambda s, lot, at, rod: setattr(at, "moment", lot.uniform(-10.0, 10.0)),
+    "load": lambda s, lot, at, rod: s.model.create(Load, on=[at.row], force=[(lot.uniform(-20.0, 20.0), -5.0)]),
+    "no loads": lambda s, lot, at, rod: s.model.delete(list(s.loads)),
+    "moved": _moved,
+    "settled": _settled,
+    "support": lambda s, lot, at, rod: setattr(
+        at, "fixed", lot.choice([(True, True), (False, True), (True, False)])
+    ),
+    "free": lambda s, lot, at, rod: setattr(at, "fixed", (False, False)) if lot.random() < 0.2 else None,
+    "clamp": lambda s, lot, at, rod: setattr(at, "fixed_rotation", lot.random() < 0.5),
+    "particle": _new_particle,
+    "no particle": lambda s, lot, at, rod: s.model.delete([at]) if lot.random() < 0.2 else None,
+    "rod": _new_rod,
+    "no rod": lambda s, lot, at, rod: s.model.delete([rod]) if lot.random() < 0.3 else None,
+    "stiffness": lambda s, lot, at, rod: setattr(rod, "stiffness", rod.stiffness * lot.uniform(0.5, 2.0)),
+    "hinge": lambda s, lot, at, rod: setattr(rod, "hinged", (lot.random() < 0.3, lot.random() < 0.3)),
+    "along": lambda s, lot, at, rod: setattr(rod, "distributed_force", (0.0, lot.uniform(-20.0, 5.0))),
+    "warmth": lambda s, lot, at, rod: setattr(rod, "temperature_change", lot.uniform(-20.0, 40.0)),
+    "gradient": lambda s, lot, at, rod: setattr(rod, "temperature_gradient", lot.uniform(-50.0, 50.0)),
+    "misfit": lambda s, lot, at, rod: setattr(
+        rod, "rest_length", rod.original_length * lot.uniform(0.999, 1.001)
+    ),
+    "strength": _strong,
+    "cable": lambda s, lot, at, rod: setattr(rod, "tension_only", lot.random() < 0.3),
+    "divide": lambda s, lot, at, rod: s.divide(rod, 2),
+    "theory": lambda s, lot, at, rod: s.press("z"),
+    "steps": lambda s, lot, at, rod: setattr(s.settings, "load_steps", lot.choice(STEPS)),
+    "undo": lambda s, lot, at, rod: s.press("ctrl+z"),
+    "undo again": lambda s, lot, at, rod: s.press("ctrl+z"),
+    "redo": lambda s, lot, at, rod: s.press("ctrl+y"),
+    "panels": lambda s, lot, at, rod: s.press(lot.choice("iiaxm")),
+    "frame": lambda s, lot, at, rod: s.frame(1.0 / 60.0),
+}
+
+
+def attempt(seed: int, actions: int, seen: Counter[str]) -> None:
+    """Edits by lot in a bundled model, each checked; `seen` counts what the states are."""
+    lot = random.Random(seed)
+    session = Session.open(lot.choice(BASES))
+    session.press("q")
+    for number in range(actions):
+        name, model = lot.choice(list(EDITS)), session.model
+        poor = not (model.particles.count > 2 and model.rods.count)
+        name = "undo" if poor or model.rods.count > MOST_RODS else name
+        some = (lot.choice(list(table)) if table.count else None for table in (model.particles, model.rods))
+        try:
+            EDITS[name](session, lot, *some)
+        except (FieldError, Refusal):
+            seen["refused"] += 1
+            continue
+        assert session.scene == "statics"
+        try:
+            check(session, seen)
+        except AssertionError as error:
+            raise AssertionError(f"edit {number}, {name}: {error}") from error
+
+
+def check(session: Session, seen: Counter[str]) -> None:
+    """What is shown is the solution of what is there."""
+    model, shown = session.model, session.document.statics
+    fresh = load(document(model))
+    try:
+        wanted = settle(
+            fresh,
+            fresh.settings.load_steps,
+            fresh.settings.theory,
+            Start.undeformed(fresh, np.zeros(fresh.rods.count)),
+        )
+    except ValueError:
+        assert shown.settlement is None
+        assert not _is_usual(model), shown.problem
+        seen["no numbers"] += 1
+        return
+    assert shown.settlement is not None, shown.problem
+    assert shown.settlement.status == wanted.status
+    for name, column in wanted.final.columns.items():
+        assert np.array_equal(model.column(name), column, equal_nan=True), name
+    stable, balanced = _lowest(model, shown.share) > STABLE, shown.balanced
+    seen["stable"] += stable
+    seen[f"{'first order' if shown.first_order else 'exact'}, {wanted.status}"] += 1
+    if not balanced:
+        gives_way = _is_inelastic(model) or not shown.first_order
+        assert gives_way or not stable, f"there is an equilibrium, not '{wanted.status}'"
+        return
+    if not shown.first_order:
+        _balances(model, shown.share)
+    elif _is_inelastic(model):
+        seen["inelastic"] += 1
+    elif stable:
+        _agrees(model, shown.share)
+        seen["compared"] += 1
+    else:
+        seen["barely stable"] += 1
+
+
+def _is_inelastic(model: Model) -> bool:
+    rods = model.rods
+    yields = np.isfinite(rods.tensile_strength) | np.isfinite(rods.compressive_strength)
+    return bool(rods.tension_only.any() or yields.any())
+
+
+def _is_usual(model: Model) -> bool:
+    """There is a rod, and nothing lies at one place."""
+    return bool(model.rods.count and (model.rods.original_length > 1e-6).all())
+
+
+# --- what the textbook says ---------------------------------------------------------------------------
+
+
+def _loads(model: Model, factor: float) -> tuple[np.ndarray, np.ndarray]:
+    """Forces (n, 2) and moments (n,) on joints: what scales by the factor, ramps with their full value, and weight."""
+    particles, environment = model.particles, model.environment
+    force, moment = particles.force + np.array(environment.force), particles.moment.copy()
+    for one in model.loads:
+        assert one.history["kind"] in ("constant", "ramp")
+        force[one.particle.row] += one.force
+        moment[one.particle.row] += one.moment
+    weight = particles.mass[:, None] * (particles.acceleration + np.array(environment.acceleration)) / 1000.0
+    return factor * force + weight, factor * moment
+
+
+def _plain(model: Model, factor: float) -> dict[str, Any]:
+    """What the textbook needs: joints, their loads and supports, and rods, by numbers."""
+    rods, particles, used = model.rods, model.particles, nodes(model)
+    with model.own_state():
+        settled, turned = particles.displacement.copy(), particles.rotation.copy()
+    force, moment = _loads(model, factor)
+    joints = [
+        {
+            "name": str(row),
+            "position": particles.position[row],
+            "force": force[row],
+            "moment": moment[row],
+            "fixed": particles.fixed[row].tolist(),
+            "fixed_rotation": bool(particles.fixed_rotation[row]),
+            "displacement": settled[row],
+            "rotation": turned[row],
+        }
+        for row in np.flatnonzero(used).tolist()
+    ]
+    names = "stiffness", "bending_stiffness", "rest_length", "thermal_expansion", "temperature_change"
+    members = [
+        {name: float(getattr(rods, name)[row]) for name in (*names, "temperature_gradient")}
+        | {"name": str(row), "between": [str(end) for end in rods.between[row].tolist()]}
+        | {"hinged": rods.hinged[row].tolist(), "distributed_force": factor * rods.distributed_force[row]}
+        for row in range(rods.count)
+    ]
+    return {"particles": joints, "rods": members}
+
+
+def _lowest(model: Model, factor: float) -> float:
+    """The lowest stiffness of the free coordinates as a share of the highest, scaled to diagonals of 1."""
+    plain = _plain(model, factor)
+    matrix, _, held, still, _ = frame_theory.assembled(plain)
+    free = ~held & ~still
+    matrix = matrix[np.ix_(free, free)]
+    scale = np.sqrt(np.maximum(np.diag(matrix), SINGULAR * np.abs(matrix).max(initial=1e-300)))
+    return float(np.linalg.eigvalsh(matrix / np.outer(scale, scale)).min(initial=1.0))
+
+
+def _agrees(model: Model, factor: float) -> None:
+    found, used = frame_theory.solve(_plain(model, factor)), np.flatnonzero(nodes(model))
+    for table, rows, names in (
+        (model.particles, used, ("displacement", "reaction", "reaction_moment")),
+        (model.rods, range(model.rods.count), ("end_axial_force", "shear", "bending_moment")),
+    ):
+        for name in names:
+            wanted = np.array([getattr(found, name)[str(row)] for row in rows])
+            got = getattr(table, name)[list(rows)]
+            if name.startswith("reaction"):
+                held = model.particles.fixed if name == "reaction" else model.particles.fixed_rotation
+                wanted, got = np.where(held[used], wanted, 0.0), np.where(held[used], got, 0.0)
+            size = max(np.abs(wanted).max(initial=0.0), 1e-3)
+            assert np.abs(got - wanted).max(initial=0.0) <= WITHIN * size / 1e-2, name
+
+
+def _balances(model: Model, factor: float) -> None:
+    """All forces on free joints of the shape that is shown are 0: derivatives of energy, less the part of loads left out."""
+    if factor != 1.0 or model.rods.count > 20:
+        return
+    force, moment = frames.forces(model)  # under constant loads
+    for one in model.loads:
+        if one.history["kind"] == "ramp":
+            force[one.particle.row] += one.force
+            moment[one.particle.row] += one.moment
+    used, largest = nodes(model), max(np.abs(model.rods.axial_force).max(), 1.0)
+    free = used[:, None] & ~model.particles.fixed
+    assert np.abs(force[free]).max(initial=0.0) <= 1e-6 * largest, "forces"
+    turns = used & (model.particles.turning > 0.0)
+    assert np.abs(moment[turns]).max(initial=0.0) <= 1e-6 * largest, "moments"
+
+
+def explore(first: int, count: int, actions: int = 200) -> int:
+    """Sessions with so many edits each; returns how many went wrong."""
+    wrong, seen = 0, Counter[str]()
+    for seed in range(first, first + count):
+        try:
+            attempt(seed, actions, seen)
+        except Exception:
+            wrong += 1
+            print(f"statics, seed {seed}:\n{traceback.format_exc()}", flush=True)
+    print(f"statics, seeds {first} to {first + count - 1}: {dict(seen)}", flush=True)
+    return wrong
