@@ -300,6 +300,14 @@ def test_modes_are_of_the_unloaded_structure_in_first_order_and_about_the_equili
     assert titles == [f"Mode 1 of 3: {free:.4g} Hz", f"Mode 1 of 3 under load: {loaded:.4g} Hz"]
 
 
+def test_frames_change_nothing_while_nothing_happens() -> None:
+    session = in_statics("portal")
+    session.frame(0.0)
+    before = session.model.revision
+    session.frame(0.1)
+    assert session.model.revision == before
+
+
 def test_plots_go_from_no_load_to_the_last_step() -> None:
     session = in_statics("portal")
     session.settings.theory, session.settings.load_steps = EXACT, (20.0,)
