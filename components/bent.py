@@ -186,6 +186,28 @@ def displacements(model: Model, rows: Rows) -> Array:
     return found
 
 
+class Station(NamedTuple):
+    """A point of the axis of a rod: how far from its start (m), the forces there by their letters (kN, kN·m), how far it has
+    moved (m, (2,)) and the axis turned (rad).
+    """
+
+    distance: float
+    forces: dict[str, float]
+    moved: Array
+    rotation: float
+
+    @classmethod
+    def of(cls, model: Model, row: int, distance: float) -> Station:
+        """That of a rod at a distance, or at its end where it does not reach so far."""
+        rows, length = np.array([row]), float((rods := model.rods).length[row])
+        length = float(rods.original_length[row]) if model.first_order else length
+        at = np.array([min(distance / length, 1.0) if length > 0.0 else 0.0])
+        forces = {name: float(values(inner_forces(model, rows, name), at)[0, 0]) for name in DIAGRAMS}
+        moved = values(displacements(model, rows)[0], at)[:, 0]
+        rotation = chord_rotation(model)[row] + deflected(model, row, at)[1][0]
+        return cls(float(at[0]) * length, forces, moved, float(rotation))
+
+
 def farthest(model: Model, rows: Rows) -> tuple[Array, Array]:
     """The largest displacement (m) along each of some rods, and the share where it is, (n,) each."""
     moved = displacements(model, rows)

@@ -15,7 +15,7 @@ from pinjoint.components.bent import AXIAL, Parts, drawn_scale, middles
 from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends
+from pinjoint.components.rod import Rod, bends
 from pinjoint.components.slider import ARROW, SUPPORT, Place, SliderStack
 from pinjoint.components.toolbar import Menu, Tool, Toolbar
 
@@ -169,6 +169,19 @@ class Readout:
 
 
 @dataclass(frozen=True)
+class Pin:
+    """A place on a rod, so far from its start (m), whose numbers stay while that rod alone is selected.
+
+    typed: the distance as a person types it (cm). told: the numbers; None while they are not to be seen.
+    """
+
+    rod: Rod
+    distance: float
+    typed: str = ""
+    told: Readout | None = None
+
+
+@dataclass(frozen=True)
 class Card:
     """A task of a lesson as it stands, for drawing and clicking.
 
@@ -249,7 +262,7 @@ class View:
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     convention: of the force method. has_scale: a length to scale, and notes about what is hidden, are shown.
     advises: they may say what to do, as in a window.
-    pointed: what is said of the element under the pointer, beside it.
+    pointed: what is said of the element under the pointer, beside it. pin: the place of which numbers stay.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption. swing: the share of it, from
     1 to −1, that is drawn now.
     names: all elements have their names, not only few.
@@ -302,6 +315,7 @@ class View:
     shape: Shape | None = None
     swing: float = 1.0
     pointed: Readout | None = None
+    pin: Pin | None = None
     fitted: bool = False
     shares: bool = False
     table: float = 0.0

@@ -1,9 +1,11 @@
-"""Readouts of a session: theory beside the run, and its energy account."""
+"""Readouts of a session: theory beside the run, its energy account, free bodies, and numbers of places along members."""
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from operator import itemgetter
 from textwrap import wrap
@@ -11,18 +13,21 @@ from typing import TYPE_CHECKING
 
 from pinjoint.components import written
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import FieldError
+from pinjoint.components.field import CM, FieldError, Vector
 from pinjoint.components.free_body import Force, on_joint, on_rod
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends
-from pinjoint.components.view import Readout
+from pinjoint.components.tags import Selected
+from pinjoint.components.view import Pin, Readout, View
 from pinjoint.documents.assessment import LARGEST
 from pinjoint.editor.context import Context
 from pinjoint.paths import ENERGIES
 from pinjoint.systems.base import StopReason
+from pinjoint.systems.edit.picking import PARTICLE_REACH
+from pinjoint.systems.edit.rods import share_at
 from pinjoint.systems.statics.counting import Count
 
 if TYPE_CHECKING:  # it imports scipy
@@ -104,6 +109,42 @@ def _energy(context: Context) -> Iterator[Readout]:
 def _error(share: float) -> str:
     """A relative error, unless it is nothing but rounding."""
     return written.share(share, 2) if share > NOTHING else tr("rounding only")
+
+
+# --- numbers along members ----------------------------------------------------------------------------
+
+
+def distance_at(model: Model, view: View, rod: Rod, pixel: Vector) -> float | None:
+    """How far from the start of a rod (m) a pixel of it lies; None unless statics shows forces that change along it."""
+    bends_or_bears = rod.bending_stiffness or any(rod.distributed_force)
+    if model.solution is None or not (view.forces_known and bends_or_bears):
+        return None
+    share = min(max(share_at(rod, view.camera.to_model(pixel)), 0.0), 1.0)
+    return share * (rod.original_length if model.first_order else rod.length)
+
+
+def pinned(context: Context) -> Pin | None:
+    """The place on the selected rod whose numbers stay, if there is one."""
+    pin, model = context.view.pin, context.model
+    if pin is None or model.solution is None or not context.view.forces_known:
+        return None
+    return pin if model.tagged(Selected) == [pin.rod] else None
+
+
+def pin_at(context: Context, hit: Handle | None, pixel: Vector) -> None:
+    """Let the numbers at a pixel of a rod stay, or no more if it is where they stay already."""
+    view, old = context.view, pinned(context)
+    view.pin = None
+    if isinstance(hit, Rod) and (distance := distance_at(context.model, view, hit, pixel)) is not None:
+        away = abs(old.distance - distance) if old is not None and old.rod is hit else math.inf
+        if away * view.camera.scale > PARTICLE_REACH * view.pixel_ratio:
+            view.pin = Pin(hit, distance)
+
+
+def retype(context: Context, pin: Pin, typed: str) -> None:
+    """Take pinned numbers to a typed distance (cm), as far as it is a number."""
+    with suppress(ValueError):
+        context.view.pin = replace(pin, distance=float(f"0{typed}") / CM[1], typed=typed)
 
 
 # --- free bodies -----------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, english, joined, listed, marked, plural, tr
 from pinjoint.components.model import Model
+from pinjoint.components.rod import Rod
 from pinjoint.components.settings import PAUSE
 from pinjoint.components.tags import Hovered
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES
@@ -19,14 +20,14 @@ from pinjoint.documents.statics import LARGE
 from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import DrawRod
 from pinjoint.editor.gestures.moving import Placing
-from pinjoint.editor.readouts import readouts
+from pinjoint.editor.readouts import distance_at, pinned, readouts
 from pinjoint.editor.sliders import slider_stack
 from pinjoint.editor.toolbar import toolbar_of
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
 from pinjoint.systems.edit.rods import is_rigid
-from pinjoint.systems.forms.results import told
+from pinjoint.systems.forms.results import along, told
 from pinjoint.systems.input.actions import ACTIONS, LIVE
 from pinjoint.systems.render.ui.overlays import BAR
 
@@ -187,12 +188,19 @@ def follows(context: Context) -> bool:
 
 
 def _point_out(context: Context) -> None:
-    """Say what the element under the pointer does now, in the view that shows it."""
+    """Say what the element under the pointer does now, in the view that shows it, and what the pinned place does."""
     model, view = context.focus
     found = model.tagged(Hovered) if isinstance(model, Model) else []
+    view.pointer = context.view.pointer
     rows = told(model, found[0], forces_known=view.forces_known) if found else []
     pointed = Readout(model.describe(found[0]), tuple(rows)) if rows else None
-    view.pointer, view.pointed, context.view.pointed = context.view.pointer, pointed, pointed
+    if found and isinstance(rod := found[0], Rod) and view.pointer is not None:
+        place = distance_at(model, view, rod, view.pointer)
+        pointed = pointed if place is None else along(model, rod, place)
+    view.pointed = context.view.pointed = pointed
+    if (pin := context.view.pin) is not None:
+        shown = pinned(context) is not None
+        context.view.pin = replace(pin, told=along(context.model, pin.rod, pin.distance) if shown else None)
 
 
 def _awaited(context: Context) -> Waiting | None:

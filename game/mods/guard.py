@@ -231,8 +231,9 @@ class Guard:
             self.mod.call(what, changed, context, pixel, mistakes=(Refusal, FieldError))
 
         def changed(context: Context, pixel: Vector) -> None:
-            model = context.model
+            model, shown = context.model, context.model.solution
             with model.transaction(name), view_kept(context):
+                model.show(shown)  # which it reads, and its commands do not
                 interruptible(lambda: function(context, pixel), model)
 
         return act

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import written
-from pinjoint.components.bent import farthest
+from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, Station, farthest
 from pinjoint.components.field import CM, Field, Role
 from pinjoint.components.form import Reading
 from pinjoint.components.handle import Handle
@@ -19,6 +19,7 @@ from pinjoint.components.load import CONSTANT, Load, factor_now
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends_unchecked, rigid_joints, utilisation
+from pinjoint.components.view import Readout
 
 SECTION = marked("Results")
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small
@@ -65,6 +66,21 @@ def told(model: Model, handle: Handle, *, forces_known: bool) -> list[tuple[str,
     elif handle.points:
         found += _of_others(model, handle)
     return [(result.title, result.text) for result in found]
+
+
+def along(model: Model, rod: Rod, distance: float) -> Readout:
+    """The forces in a rod so far from its start (m), and how far it has moved and turned there."""
+    rods, there = model.rods, Station.of(model, rod.row, distance)
+    scales = (rods.end_axial_force, "kN"), (rods.shear, "kN"), (rods.largest_moment[:, 0], "kN·m")
+    of = dict(zip((AXIAL, SHEAR, MOMENT), scales, strict=True))
+    rows = [(name, _number(there.forces[name], *of[name])) for name in of]
+    moved, turned = CM[1] * there.moved, MRAD[1] * rods.end_rotation
+    column = np.append(CM[1] * model.particles.displacement, moved)
+    moved_so_far = _vector("", moved.tolist(), column, CM[0], Particle.displacement).text
+    rows.append((tr("displacement"), moved_so_far))
+    rows.append((tr("rotation"), _number(MRAD[1] * there.rotation, turned, MRAD[0])))
+    place = written.length(there.distance, written.DIGITS)
+    return Readout(f"{model.describe(rod)}, x = {place}", tuple(rows))
 
 
 # --- rods ---------------------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ from pinjoint.editor.clipboard import Part
 from pinjoint.editor.context import Context, tell
 from pinjoint.editor.gestures.drawing import Drawing, DrawSupport, tool_in_hand
 from pinjoint.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
+from pinjoint.editor.readouts import pin_at, pinned, retype
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.editor.toolbar import menu_at
 from pinjoint.systems.edit import Refusal
@@ -53,6 +54,7 @@ def _select(context: Context, pixel: Vector) -> None:
         _draw(context, context.view.tool, pixel)
     else:
         hit = pick(context.model, context.view, pixel)
+        pin_at(context, hit, pixel)
         context.select(*([hit] if hit is not None else []))
 
 
@@ -198,7 +200,8 @@ def _properties(context: Context, pixel: Vector) -> None:
     context.scenes.request_from_pause("properties")
 
 
-@action("delete", ("delete", "backspace"), "delete the selection", enabled=_any_selected)
+@action("delete", "backspace", "delete the selection", (SIMULATION, PAUSE))
+@action("delete", "delete", "delete the selection", enabled=_any_selected)
 def _delete(context: Context, pixel: Vector) -> None:
     doomed = context.selected
     if not doomed:
@@ -214,6 +217,15 @@ def _delete(context: Context, pixel: Vector) -> None:
             counted(context.model.tables[name].kind.noun, count) for name, count in gone.items() if count
         ]
         context.notice = tr("{elements} deleted.", elements=listed(elements))
+
+
+@action("erase place", "backspace", "erase the typed x, or delete the selection", (STATICS,))
+def _erase_place(context: Context, pixel: Vector) -> None:
+    pin = pinned(context)
+    if pin is not None and pin.typed:
+        retype(context, pin, pin.typed[:-1])
+    else:
+        _delete(context, pixel)
 
 
 def nudge(context: Context, direction: Vector, *, far: bool) -> bool:

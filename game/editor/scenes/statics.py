@@ -9,6 +9,7 @@ from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.tags import DiagramShown
 from pinjoint.editor.context import Context, Scene
+from pinjoint.editor.readouts import pinned, retype
 from pinjoint.editor.sliders import slider_stack
 from pinjoint.systems.base import Phase, System
 
@@ -28,7 +29,16 @@ class Statics(Scene):
         view.sliders = slider_stack(context)
         view.follow(context.model, clear=True)  # of one slider more
 
+    def type(self, context: Context, text: str) -> None:
+        """Digits take the pinned numbers to that distance."""
+        pin = pinned(context)
+        if pin is not None and set(text) <= set("0123456789.,"):
+            context.notice = ""  # that the same key lets no time pass
+            retype(context, pin, pin.typed + text.replace(",", "."))
+
     def hint(self, context: Context) -> str:
+        if pinned(context) is not None:
+            return tr("type x in cm     Esc or click again: take it away     Return properties     F1 help")
         if context.model.particles.count == 0:
             return tr("click a tool, then the canvas     right click menu     F1 help")
         return tr(

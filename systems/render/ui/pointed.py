@@ -1,57 +1,76 @@
-"""Pointed: the numbers of the element under the pointer, beside it."""
+"""Pointed: the numbers of the element under the pointer, beside it, and those of a place that are to stay."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from pinjoint.components.bent import Axes
 from pinjoint.components.camera import Rectangle
 from pinjoint.components.handle import Handle
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.tags import Hovered
+from pinjoint.components.view import Readout
 from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels.occupancy import STRONG
-from pinjoint.systems.render.marks import Mark, Points
+from pinjoint.systems.render.marks import Discs, Mark, Points
 from pinjoint.systems.render.model.sheet import Sheet
-from pinjoint.systems.render.symbols import SUPPORT_DEPTH
+from pinjoint.systems.render.symbols import RIM, SUPPORT_DEPTH
 from pinjoint.systems.render.theme import faded
 from pinjoint.systems.render.ui.layout import Column, Paper, Plate, Row, Text
 
 _PAD, _GAP, _NEAR = 8.0, 14.0, 16.0  # points: inside the box, between columns, to the pointer
-_ROWS = (8, 2, 1)  # how many are told, where that many find room
+_PIN = 4.0  # points, radius of the mark of a place
+# rows, and points of type, of which the first with room is taken
+_FORMS = (8, 12.0), (8, 9.0), (3, 12.0), (3, 9.0), (1, 12.0)
 _STEP, _BESIDE = 8.0, 90.0  # points between places that are tried; within which they are to cover no lines
 
 
 def draw_pointed(sheet: Sheet) -> list[Mark]:
-    """A box with the results of the element under the pointer, near that, where it covers neither it nor what is said."""
-    pointed, tagged = (
-        sheet.view.pointed,
-        ((t, sheet.tagged(Hovered, name)) for name, t in sheet.model.tables.items()),
-    )
+    """Boxes with the results of the pinned place, which is marked, and of the element under the pointer."""
+    view, marks = sheet.view, list[Mark]()
+    if view.help:
+        return marks
+    if (pin := view.pin) is not None and pin.told is not None:
+        row = np.array([pin.rod.row])
+        share = min(pin.distance / float(sheet.model.rods.length[row[0]]), 1.0)
+        at = view.camera.to_pixels(Axes.of(sheet.model, row).points(np.array([share]))[0])
+        size, ink = np.array([_PIN * sheet.unit]), sheet.theme.focus
+        marks += [
+            Discs(at, size, ink, sheet.theme.hollow, RIM * sheet.unit),
+            *_box(sheet, pin.told, pin.rod, at[0]),
+        ]
+    tagged = ((t, sheet.tagged(Hovered, name)) for name, t in sheet.model.tables.items())
     handle = next((table[int(rows[0])] for table, rows in tagged if len(rows)), None)
-    if pointed is None or handle is None or sheet.view.preview is not None or sheet.view.help:
-        return []
+    if view.pointed is not None and handle is not None and view.preview is None:
+        marks += _box(sheet, view.pointed, handle, np.array(view.pointer or view.camera.middle))
+    return marks
+
+
+def _box(sheet: Sheet, pointed: Readout, handle: Handle, at: Points) -> list[Mark]:
+    """A box with the results of an element near a pixel, where it covers neither that nor what is said."""
     theme = sheet.theme
-    title = Text(pointed.title, 12.0, theme.text, "semibold")
-    for count in _ROWS:  # fewer where more would cover values
+    for count, points in _FORMS:
+        title = Text(pointed.title, points, theme.text, "semibold")
         rows = [
-            Row((Text(name, 12.0, theme.muted, grow=1.0), Text(value, 12.0, theme.text, "semibold")), _GAP)
+            Row((Text(name, points, theme.muted, grow=1.0), Text(value, points, theme.text, "semibold")), _GAP)
             for name, value in pointed.rows[:count]
         ]
         inside = Column([title, *rows], around=(_PAD, _PAD / 2, _PAD / 2))
         box = Plate(inside, faded(theme.panel, 0.96), theme.line)
         width = box.width(sheet.unit)
-        place = _free_place(sheet, handle, np.array([width, box.height(sheet.unit, width)]))
+        place = _free_place(sheet, handle, np.array([width, box.height(sheet.unit, width)]), at)
         if place is not None:
             paper = Paper(sheet.unit)
             paper.put(box, place)
+            sheet.occupancy.block(*place.box)
             return paper.marks
     return []
 
 
-def _free_place(sheet: Sheet, handle: Handle, size: Points) -> Rectangle | None:
-    """The place nearest to the pointer where a box covers no value, name or panel; near by one where it covers no line."""
-    (low, high), pointer, u = sheet.viewport.corners, sheet.view.pointer or sheet.view.camera.middle, sheet.unit
+def _free_place(sheet: Sheet, handle: Handle, size: Points, pointer: Points) -> Rectangle | None:
+    """The place nearest to a pixel where a box covers no value, name or panel; near by one where it covers no line."""
+    (low, high), u = sheet.viewport.corners, sheet.unit
     sides = [(np.arange(low[k], high[k] - size[k], _STEP * u), pointer[k], size[k]) for k in (0, 1)]
     start, end, reach = _outline(sheet, handle)
     for covered, farthest in ((0, _BESIDE * u), (STRONG, np.inf)):

@@ -7,12 +7,13 @@ from pinjoint import Session
 from pinjoint.components.handle import Handle
 from pinjoint.components.load import factor_at
 from pinjoint.components.tags import Hovered
-from pinjoint.components.view import drawn_positions
+from pinjoint.components.view import Readout, drawn_positions
 from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.marks import Panel, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from tests.reference.boxes import overlap, text_box
+from tests.systems.render.frame_models import EI, PINNED, ROLLER, frame
 
 LIGHT = load_theme("light")
 
@@ -141,3 +142,122 @@ def test_it_covers_no_value_in_the_narrow_sets_of_the_force_method(size: tuple[i
         covered = [mark.text for mark in values if overlap(text_box(mark, 0.7 * mark.size), box)]
         assert not covered, name
     assert told_of >= 3
+
+
+# --- along members ---------------------------------------------------------------------------------------
+
+LOAD, SPAN = 8.0, 4.0  # kN/m, m
+
+
+def beam() -> Session:
+    """A simple beam AB under a uniform force, in statics by first-order theory."""
+    source = frame(
+        {"A": (0.0, 0.0, PINNED), "B": (SPAN, 0.0, ROLLER)}, {"A B": {"distributed_force": [0, -LOAD]}}
+    )
+    session = Session.open(source)
+    session.resize(1000, 720)
+    session.press("q")
+    session.frame(0.0)
+    session.view.fit(session.model)
+    return session
+
+
+def along(session: Session, x: float) -> Readout | None:
+    """What is told with the pointer there on AB."""
+    session.point(x, 0.0)
+    session.model.tag_only([session.rods["AB"]], Hovered)
+    session.update_view()
+    return session.view.pointed
+
+
+def by_hand(x: float, load: float = LOAD) -> dict[str, float]:
+    """V = q(L/2 − x), M = qx(L − x)/2, v = −qx(L³ − 2Lx² + x³)/24EI and its slope; in kN, kN·m, cm, mrad."""
+    return {
+        "N": 0.0,
+        "V": load * (SPAN / 2.0 - x),
+        "M": load * x * (SPAN - x) / 2.0,
+        "displacement": -100.0 * load * x * (SPAN**3 - 2.0 * SPAN * x**2 + x**3) / 24.0 / EI,
+        "rotation": -1000.0 * load * (SPAN**3 - 6.0 * SPAN * x**2 + 4.0 * x**3) / 24.0 / EI,
+    }
+
+
+def assert_told(readout: Readout | None, x: float, load: float = LOAD) -> None:
+    assert readout is not None
+    assert float(readout.title.removeprefix("rod AB, x = ").removesuffix(" cm")) == pytest.approx(
+        100.0 * x, rel=1e-3
+    )
+    told_of = {name: text.rpartition(" ")[0].rpartition("y ")[2] for name, text in readout.rows}
+    wanted = by_hand(x, load)
+    assert [*told_of] == [*wanted]
+    for name, text in told_of.items():
+        assert float(text.replace("−", "-")) == pytest.approx(wanted[name], rel=6e-4, abs=1e-9), name
+
+
+def test_pointing_along_a_member_tells_what_a_hand_calculates() -> None:
+    session = beam()
+    for x in (0.5, 1.0, 3.5):
+        assert_told(along(session, x), x)
+    assert "rod AB, x = 350 cm" in compose(session.model, session.view, LIGHT).texts
+    session.press("q")
+    told_of = along(session, 1.0)
+    assert told_of is not None
+    assert told_of.title == "rod AB", "in motion there is no equilibrium along it"
+
+
+def test_a_click_pins_the_numbers_of_a_place_which_follow_edits() -> None:
+    session = beam()
+    session.click(1.0, 0.0)
+    session.update_view()
+    assert session.view.pin is not None
+    assert_told(session.view.pin.told, 1.0)
+    texts = compose(session.model, session.view, LIGHT).texts
+    assert {"rod AB, x = 100 cm", "12.00 kN·m"} <= set(texts)
+    session.rods["AB"].distributed_force = (0.0, -2.0 * LOAD)
+    session.update_view()
+    assert_told(session.view.pin.told, 1.0, 2.0 * LOAD)
+    assert_told(along(session, 3.0), 3.0, 2.0 * LOAD)
+    texts = compose(session.model, session.view, LIGHT).texts
+    assert {"rod AB, x = 100 cm", "rod AB, x = 300 cm"} <= set(texts), "both find room"
+    session.press("escape")
+    session.update_view()
+    assert session.view.pin.told is None
+    session.click(1.0, 0.0)
+    session.click(1.0, 0.0)
+    session.update_view()
+    assert session.view.pin is None, "a second click there takes it away"
+
+
+def test_a_typed_distance_takes_pinned_numbers_there() -> None:
+    session = beam()
+    session.click(1.0, 0.0)
+    for character in "150.5":
+        session.press(character)  # as a window tells a key, and the text that it writes
+        session.type(character)
+    session.update_view()
+    assert session.view.pin is not None
+    assert session.notice == ""
+    assert_told(session.view.pin.told, 1.505)
+    session.press("backspace")
+    session.press("backspace")
+    session.update_view()
+    assert_told(session.view.pin.told, 1.5)
+    session.type("0")
+    session.update_view()
+    assert_told(session.view.pin.told, SPAN)  # 1500 cm are beyond its end
+    for _ in range(4):
+        session.press("backspace")
+    assert session.model.rods.count == 1
+    session.press("backspace")
+    assert session.model.rods.count == 0, "with nothing typed it deletes what is selected"
+    session.update_view()
+    session.undo()
+    session.update_view()
+
+
+def test_bars_tell_of_themselves_as_they_are_the_same_all_along() -> None:
+    session = Session.open("isostatic")
+    session.press("q")
+    session.click(0.5, 0.5)
+    rows = told(session, session.rods["AB"])
+    assert session.view.pin is None
+    assert rows["axial force"] == "−28.28 kN"
