@@ -427,7 +427,8 @@ class World:
     def transaction(self, title: str, *, shows_state: bool = True) -> Iterator[None]:
         """Make all commands inside one entry of the log; if one raises, none of them happened. Inside, the state is shown.
 
-        title: said by `tr`, or marked: it is shown in the language that is present then. Not shows_state: what is shown stays.
+        title: said by `tr`, or marked: it is shown in the language that is present then.
+        shows_state: if False, what was shown is shown inside, too.
         """
         inverses: list[Command] = []
         outer, self._open = self._open, inverses
