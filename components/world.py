@@ -424,15 +424,15 @@ class World:
             self.on_command(inverse)
 
     @contextmanager
-    def transaction(self, title: str, *, looks: bool = False) -> Iterator[None]:
+    def transaction(self, title: str, *, shows_state: bool = True) -> Iterator[None]:
         """Make all commands inside one entry of the log; if one raises, none of them happened. Inside, the state is shown.
 
-        title: said by `tr`, or marked: it is shown in the language that is present then. looks: columns show what they
-        did before, for code that may only look at them.
+        title: said by `tr`, or marked: it is shown in the language that is present then.
+        shows_state: if False, what was shown is shown inside, too.
         """
         inverses: list[Command] = []
         outer, self._open = self._open, inverses
-        with nullcontext() if looks else self.own_state():
+        with self.own_state() if shows_state else nullcontext():
             try:
                 yield
             except BaseException:

@@ -124,7 +124,7 @@ class Guard:
         before = Snapshot.take(model, *tables) if tables else None
 
         def changed() -> bool:
-            with model.transaction(system.name, looks=True):
+            with model.transaction(system.name, shows_state=False):
                 if self.mod.included:
                     change()
                 else:
@@ -232,7 +232,7 @@ class Guard:
 
         def changed(context: Context, pixel: Vector) -> None:
             model = context.model
-            with model.transaction(name, looks=True), view_kept(context):
+            with model.transaction(name, shows_state=False), view_kept(context):
                 interruptible(lambda: function(context, pixel), model)
 
         return act
