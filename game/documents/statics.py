@@ -22,6 +22,7 @@ from pinjoint.components.view import Shape
 from pinjoint.documents.shapes import last_motion
 
 if TYPE_CHECKING:  # it imports scipy
+    from pinjoint.systems.statics.second_order import SecondOrder
     from pinjoint.systems.statics.settle import Settlement
     from pinjoint.systems.statics.state import StaticState
 
@@ -60,7 +61,8 @@ class Statics:
         self.problem = ""
         self.motion: Shape | None = None
         self.revision, self.offered = 0, -1
-        self._compared = -1, ""  # the revision of which the theories were compared, and what is said of them
+        # The revision of which the theories were compared, what came of it, and the other one's way.
+        self._compared: tuple[int, SecondOrder | None, Settlement | None] = -1, None, None
         self._rest = -1, 0.0  # the revision that was asked for last, and since when (s)
         self.waits = False  # for a hand to let go, with the solution of what was there before
 
@@ -152,11 +154,8 @@ class Statics:
 
     def _wanted(self) -> tuple[object, ...]:
         """The revisions of all that a solution follows from; the second of them, that of the rows of tables."""
-        model, settings, particles = (
-            self._model,
-            self._model.tables["settings"],
-            self._model.tables["particles"],
-        )
+        model = self._model
+        settings, particles = model.tables["settings"], model.tables["particles"]
         return (
             model.newest(Role.DOCUMENT),
             model.structure,
@@ -195,13 +194,15 @@ class Statics:
 
             other = self.settled(EXACT if self.first_order else FIRST_ORDER)
             both = (settlement, other) if self.first_order else (other, settlement)
-            found = None
-            if other.final.balanced:
-                found = SecondOrder.of(self._model, *(one.final for one in both))
-            told = tr("exact: {status}", status=tr(other.status)) if self.first_order else ""
-            said = found.said if found is not None else "" if other.final.balanced else told
-            self._compared = self.revision, said
-        return self._compared[1]
+            rests = other.final.balanced
+            found = SecondOrder.of(self._model, *(one.final for one in both)) if rests else None
+            self._compared = self.revision, found, other
+        _, difference, compared = self._compared
+        if difference is not None:
+            return difference.said
+        if compared is None or compared.final.balanced or not self.first_order:
+            return ""
+        return tr("exact: {status}", status=tr(compared.status))
 
     def _find(self) -> None:
         model = self._model

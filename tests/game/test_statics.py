@@ -67,6 +67,16 @@ def test_nothing_is_solved_in_the_midst_of_an_edit() -> None:
     assert session.document.statics.revision > before
 
 
+def test_what_is_said_of_theories_changes_with_the_language() -> None:
+    session = shown("portal")
+    session.update_view()
+    said = session.document.statics.second_order()
+    session.press("f2")
+    assert session.document.statics.second_order() not in ("", said)
+    session.press("f2")
+    assert session.document.statics.second_order() == said
+
+
 def test_a_gerber_beam_shows_what_a_hand_calculates() -> None:
     """M_B = −(q·2²/2 + 2·q·3/2) = −60 kN·m; H carries q·3/2 = 18 kN; A: 18 − 60/3 = −2 kN."""
     session = shown(GERBER)
