@@ -199,8 +199,8 @@ class Station(NamedTuple):
     @classmethod
     def of(cls, model: Model, row: int, distance: float) -> Station:
         """That of a rod at a distance, or at its end where it does not reach so far."""
-        rows, length = np.array([row]), float((rods := model.rods).length[row])
-        length = float(rods.original_length[row]) if model.first_order else length
+        rows, rods = np.array([row]), model.rods
+        length = float((rods.original_length if model.first_order else rods.length)[row])
         at = np.array([min(distance / length, 1.0) if length > 0.0 else 0.0])
         forces = {name: float(values(inner_forces(model, rows, name), at)[0, 0]) for name in DIAGRAMS}
         moved = values(displacements(model, rows)[0], at)[:, 0]

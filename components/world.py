@@ -6,7 +6,7 @@ import itertools
 import weakref
 from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from typing import Any, NoReturn, Protocol, TypeVar, overload
 
@@ -424,14 +424,15 @@ class World:
             self.on_command(inverse)
 
     @contextmanager
-    def transaction(self, title: str) -> Iterator[None]:
+    def transaction(self, title: str, *, shows_state: bool = True) -> Iterator[None]:
         """Make all commands inside one entry of the log; if one raises, none of them happened. Inside, the state is shown.
 
         title: said by `tr`, or marked: it is shown in the language that is present then.
+        shows_state: if False, what was shown is shown inside, too.
         """
         inverses: list[Command] = []
         outer, self._open = self._open, inverses
-        with self.own_state():
+        with self.own_state() if shows_state else nullcontext():
             try:
                 yield
             except BaseException:

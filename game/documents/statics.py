@@ -22,12 +22,14 @@ from pinjoint.components.view import Shape
 from pinjoint.documents.shapes import last_motion
 
 if TYPE_CHECKING:  # it imports scipy
+    from pinjoint.systems.statics.second_order import SecondOrder
     from pinjoint.systems.statics.settle import Settlement
     from pinjoint.systems.statics.state import StaticState
 
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
 MOST_COMPARED = 300  # rods, up to which both theories take a moment only
 REST = 0.2  # s without an edit, after which a window compares them
+LARGE = 1000  # rods, from which on a window solves what a hand moves once it lets go
 _CHOICES = "theory", "load_steps"  # of the settings
 _MOVED = "displacement", "rotation"  # of constrained directions: settled supports
 
@@ -59,8 +61,10 @@ class Statics:
         self.problem = ""
         self.motion: Shape | None = None
         self.revision, self.offered = 0, -1
-        self._compared = -1, ""  # the revision of which the theories were compared, and what is said of them
+        # The revision of which the theories were compared, what came of it, and the other one's way.
+        self._compared: tuple[int, SecondOrder | None, Settlement | None] = -1, None, None
         self._rest = -1, 0.0  # the revision that was asked for last, and since when (s)
+        self.waits = False  # for a hand to let go, with the solution of what was there before
 
     @property
     def settlement(self) -> Settlement | None:
@@ -89,7 +93,12 @@ class Statics:
     def balanced(self) -> bool:
         """True if what is shown is an equilibrium under the last load step."""
         settlement = self.settlement
-        return settlement is not None and settlement.final.balanced
+        return settlement is not None and settlement.final.balanced and not self.is_late
+
+    @property
+    def is_late(self) -> bool:
+        """True if what is shown is the solution of what was there before a hand moved it."""
+        return self.waits and self._of != self._wanted()
 
     @property
     def said(self) -> str:
@@ -97,6 +106,8 @@ class Statics:
         settlement = self.settlement
         if settlement is None:
             return marked("no solution")
+        if self.is_late:
+            return marked("solved when you let go")
         return SAID[self._model.settings.theory] if settlement.status == "equilibrium" else settlement.status
 
     @property
@@ -131,19 +142,26 @@ class Statics:
         model = self._model
         if self._seen == model.revision:
             return
-        settings, particles = model.tables["settings"], model.tables["particles"]
-        wanted = (
-            model.newest(Role.DOCUMENT),
-            model.structure,
-            *(settings.version(name) for name in _CHOICES),
-            *(particles.version(name) for name in _MOVED),
-        )
+        wanted = self._wanted()
+        if self.waits and self._of and wanted[1] == self._of[1]:
+            return
         if wanted != self._of:
             self._of = wanted
             with model.own_state():
                 self._find()
             self.revision = model.next_revision()
         self._seen = model.revision
+
+    def _wanted(self) -> tuple[object, ...]:
+        """The revisions of all that a solution follows from; the second of them, that of the rows of tables."""
+        model = self._model
+        settings, particles = model.tables["settings"], model.tables["particles"]
+        return (
+            model.newest(Role.DOCUMENT),
+            model.structure,
+            *(settings.version(name) for name in _CHOICES),
+            *(particles.version(name) for name in _MOVED),
+        )
 
     def settled(
         self, theory: str | None = None, load_factors: Sequence[float] | float | None = None
@@ -176,13 +194,15 @@ class Statics:
 
             other = self.settled(EXACT if self.first_order else FIRST_ORDER)
             both = (settlement, other) if self.first_order else (other, settlement)
-            found = None
-            if other.final.balanced:
-                found = SecondOrder.of(self._model, *(one.final for one in both))
-            told = tr("exact: {status}", status=tr(other.status)) if self.first_order else ""
-            said = found.said if found is not None else "" if other.final.balanced else told
-            self._compared = self.revision, said
-        return self._compared[1]
+            rests = other.final.balanced
+            found = SecondOrder.of(self._model, *(one.final for one in both)) if rests else None
+            self._compared = self.revision, found, other
+        _, difference, compared = self._compared
+        if difference is not None:
+            return difference.said
+        if compared is None or compared.final.balanced or not self.first_order:
+            return ""
+        return tr("exact: {status}", status=tr(compared.status))
 
     def _find(self) -> None:
         model = self._model

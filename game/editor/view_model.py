@@ -16,6 +16,7 @@ from pinjoint.components.settings import PAUSE
 from pinjoint.components.tags import Hovered
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
+from pinjoint.documents.statics import LARGE
 from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import DrawRod
 from pinjoint.editor.gestures.moving import Placing
@@ -58,6 +59,8 @@ def show(context: Context, elapsed: float) -> None:
     """Let the view show the session as it is now, so many seconds after the last time."""
     view, scene = context.view, context.scenes.active
     solved, statics = context.model.solution is not None, context.document.statics
+    view.steady = isinstance(context.gesture, Placing)
+    statics.waits = view.steady and context.window is not None and context.model.rods.count > LARGE
     view.forces_known = solved or context.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
@@ -78,7 +81,7 @@ def show(context: Context, elapsed: float) -> None:
     if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
         view.pressed = None
     view.flashes = _flashes(context)
-    view.heading, view.steady = tr(scene.heading), isinstance(context.gesture, Placing)
+    view.heading = tr(scene.heading)
     view.provisional = _provisional(context)
     view.shape = context.document.shapes.shown or (statics.motion if solved else None)
     view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0

@@ -124,7 +124,7 @@ class Guard:
         before = Snapshot.take(model, *tables) if tables else None
 
         def changed() -> bool:
-            with model.transaction(system.name):
+            with model.transaction(system.name, shows_state=False):
                 if self.mod.included:
                     change()
                 else:
@@ -231,9 +231,8 @@ class Guard:
             self.mod.call(what, changed, context, pixel, mistakes=(Refusal, FieldError))
 
         def changed(context: Context, pixel: Vector) -> None:
-            model, shown = context.model, context.model.solution
-            with model.transaction(name), view_kept(context):
-                model.show(shown)  # which it reads, and its commands do not
+            model = context.model
+            with model.transaction(name, shows_state=False), view_kept(context):
                 interruptible(lambda: function(context, pixel), model)
 
         return act

@@ -9,6 +9,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.documents.document import document
 from pinjoint.documents.models import load
+from pinjoint.editor import view_model
 from pinjoint.session import Session
 from pinjoint.systems.base import Phase
 from pinjoint.systems.render.labels.placing import Placed
@@ -64,6 +65,16 @@ def test_nothing_is_solved_in_the_midst_of_an_edit() -> None:
     assert session.document.statics.revision == before
     assert session.rods["CD"].axial_force
     assert session.document.statics.revision > before
+
+
+def test_what_is_said_of_theories_changes_with_the_language() -> None:
+    session = shown("portal")
+    session.update_view()
+    said = session.document.statics.second_order()
+    session.press("f2")
+    assert session.document.statics.second_order() not in ("", said)
+    session.press("f2")
+    assert session.document.statics.second_order() == said
 
 
 def test_a_gerber_beam_shows_what_a_hand_calculates() -> None:
@@ -156,6 +167,26 @@ def test_in_a_window_theories_are_compared_once_the_hand_rests() -> None:
     assert other.startswith("second order")
     assert other != said
     assert statics.second_order() == other
+
+
+def test_a_large_structure_is_solved_when_the_hand_lets_go(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pale meanwhile, with the solution of before; a window alone waits."""
+    monkeypatch.setattr(view_model, "LARGE", 2)
+    session = shown("portal")
+    session.window = object()
+    before = session.model.rods.end_axial_force.copy()
+    x, y = session.point(*session.particles["B"].position)
+    session.press("drag", (x, y))
+    session.frame(0.0)
+    for number in range(1, 4):
+        session.press("drag to", (x + 9.0 * number, y))
+        session.frame(0.0)
+        np.testing.assert_array_equal(session.model.rods.end_axial_force, before)
+        assert session.view.provisional == session.view.status.state == "solved when you let go"
+    session.press("drop", (x + 27.0, y))
+    session.frame(0.0)
+    assert_is_solution(session, "first-order")
+    assert not session.view.provisional
 
 
 def test_a_run_is_not_changed_by_a_look_at_statics() -> None:
@@ -298,6 +329,14 @@ def test_modes_are_of_the_unloaded_structure_in_first_order_and_about_the_equili
     loaded = Vibrations.of(session.model, session.statics("exact").final).hertz[0]
     free = Vibrations.of(session.model).hertz[0]
     assert titles == [f"Mode 1 of 3: {free:.4g} Hz", f"Mode 1 of 3 under load: {loaded:.4g} Hz"]
+
+
+def test_frames_change_nothing_while_nothing_happens() -> None:
+    session = in_statics("portal")
+    session.frame(0.0)
+    before = session.model.revision
+    session.frame(0.1)
+    assert session.model.revision == before
 
 
 def test_plots_go_from_no_load_to_the_last_step() -> None:
