@@ -30,7 +30,7 @@ from pinjoint.systems.render.symbols import RIM, turned_parts
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import WEIGHTS, capital_height
 
-_WHITE, _BLACK = (255, 255, 255, 255), (0, 0, 0, 255)
+_WHITE, _BLACK = 255, 255, 255, 255), (0, 0, 0, 255
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
@@ -120,9 +120,8 @@ class Canvas:
     # --- symbols and texts ---------------------------------------------------------------------------
 
     def _stamps(self, surface: pygame.Surface, mark: Stamps) -> None:
-        at = np.clip(
-            mark.at, -1e6, 1e6
-        )  # pixels; so far away it is not seen, and can be counted in whole numbers
+        # Pixels; so far away it is not seen, and can be counted in whole numbers.
+        at = np.clip(mark.at, -1e6, 1e6)
         fine = np.floor(at * _PHASES + 0.5).astype(np.int64)
         whole, phase = np.divmod(fine, _PHASES)
         pairs = []
