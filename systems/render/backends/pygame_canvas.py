@@ -30,7 +30,7 @@ from pinjoint.systems.render.symbols import RIM, turned_parts
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import WEIGHTS, capital_height
 
-_WHITE, _BLACK = 255, 255, 255, 255), (0, 0, 0, 255
+_WHITE, _BLACK = (255, 255, 255, 255), (0, 0, 0, 255)
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
