@@ -30,10 +30,8 @@ FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn 
 MOST_PIECES = 32  # of a drawn rod
 _LARGEST = 1e6  # pieces that a rod would have to be cut into; such are left out
 _STEEP, _STEEPEST = 0.05, 2.5  # rad, slopes from which on tangents are drawn truly, and up to which
-_SAMPLES, _ROUNDING = (
-    33,
-    2e-16,
-)  # between which a zero of a polynomial is looked for, and the shares that are one to it
+# Between which a zero of a polynomial is looked for, and the shares that are one to it.
+_SAMPLES, _ROUNDING = 33, 2e-16
 
 
 @dataclass(frozen=True)
@@ -296,9 +294,8 @@ def zeros(polynomials: Array) -> tuple[Rows, Array]:
     low, high = samples[place], samples[place + 1]
     before, slopes, step = signs[which, place], derivative(polynomials), 0.5 * (high - low)
     share = low + step
-    for _ in range(
-        60
-    ):  # Newton's method, or half the interval where that is less: some five times, down to rounding
+    # Newton's method, or half the interval where that is less: some five times, down to rounding.
+    for _ in range(60):
         value = values(polynomials[which], share[:, None])[:, 0]
         low, high = np.where(value * before > 0.0, share, low), np.where(value * before > 0.0, high, share)
         slope = values(slopes[which], share[:, None])[:, 0]

@@ -13,16 +13,11 @@ from pinjoint.components.wording import quoted
 
 AUTOMATIC = "automatic"
 NO_DIAGRAMS = "none"
-DIAGRAMS = (
-    "N",
-    "M",
-    "V",
-)  # of axial forces, bending moments and shears, in the order in which they follow one another
+# Of axial forces, bending moments and shears, in the order in which they follow one another.
+DIAGRAMS = ("N", "M", "V")
 INTEGRATORS = ChainMap(EXTENSIONS.integrators, {AUTOMATIC: None})  # the names of all there are at any time
-PAUSE, STATICS = HUBS = (
-    "pause",
-    "statics",
-)  # the scenes from which a person edits, and in which a model may open
+# The scenes from which a person edits, and in which a model may open.
+PAUSE, STATICS = HUBS = ("pause", "statics")
 MOST_LOAD_STEPS = 100
 
 

@@ -101,9 +101,8 @@ class Preparation(System):
         """Say what is needed next; and once each, what could not be compiled or kept."""
         simulation = frame.session.simulation
         before, self._structure = self._structure, simulation.model.structure
-        follows = (
-            frame.session.view.steady and not frame.session.busy
-        )  # a hand, which modes of a frame hold up for 60 ms
+        # A hand, which modes of a frame hold up for 60 ms.
+        follows = frame.session.view.steady and not frame.session.busy
         if before == self._structure and not follows:  # what was made or deleted is seen first
             self._ask(simulation)
             self._compile_here()

@@ -23,10 +23,8 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.arrows import extent, usual
 from pinjoint.systems.input.actions import LIVE
 
-SCALE, LOAD = (
-    -1,
-    -2,
-)  # the keys of the controls of the displacement scale and, in statics, of the last load step
+# The keys of the controls of the displacement scale and, in statics, of the last load step.
+SCALE, LOAD = -1, -2
 HIGH = 400.0  # points of a canvas that has room for that of the load
 LOADS = Slider((), 0.0, 2.0)  # the range of that, unless the model needs more
 SCALES = Slider((), 1.0, 1000.0, logarithmic=True)  # of displacements, unless the model needs more

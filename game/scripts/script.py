@@ -45,10 +45,8 @@ from pinjoint.components.wording import as_json, cut, remedy
 HEADER = {"format": "pinjoint session", "version": 1}
 _HEADER_KEYS = (*HEADER, "model", "title", "description", "mods", "language")
 EMPTY = {"format": "pinjoint model", "version": 1}
-TO_WATCH, TO_DO = (
-    "lessons",
-    "lessons/tasks",
-)  # folders of bundled lessons; those to do ask a student for something
+# Folders of bundled lessons; those to do ask a student for something.
+TO_WATCH, TO_DO = "lessons", "lessons/tasks"
 
 
 class ScriptError(Mistake, ValueError):

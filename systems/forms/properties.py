@@ -25,15 +25,8 @@ from pinjoint.systems.forms.typing import YES_NO, Typing
 MIXED = marked("mixed")
 KIND = "kind"  # the part of a history that is its kind
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
-_OF_RODS = (
-    "diagram_scale",
-    "original_diagrams",
-    "diagrams",
-    "theory",
-    "opens_in",
-    "plasticity",
-    "sleeping",
-)  # settings that concern rods; the others particles
+# Settings that concern rods; the others particles.
+_OF_RODS = ("diagram_scale", "original_diagrams", "diagrams", "theory", "opens_in", "plasticity", "sleeping")
 _DECIDED = (Particle.asleep, Rod.yielded_at)  # by the run
 # Fields of one kind with a heading of their own, in the order in which these follow.
 _APART: Mapping[str, tuple[Field[Any], ...]] = {

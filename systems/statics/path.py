@@ -168,9 +168,8 @@ class _Critical:
     def motion(self) -> Array:
         """What nothing resists, (n, …), the largest 1."""
         structure = self.path.structure
-        if (
-            self.kind == COLLAPSE and self.tangent.factor.exists
-        ):  # all that yields may leave more than one motion
+        # All that yields may leave more than one motion.
+        if self.kind == COLLAPSE and self.tangent.factor.exists:
             return normalised(structure.spread(self.tangent.sense * self.tangent.rate))
         _, mode = softest(structure, self.point.response, self.tangent.soft, nearest=True)
         return upright(normalised(structure.spread(mode)))

@@ -40,14 +40,8 @@ from pinjoint.systems.statics.theory import FirstOrder
 
 LARGEST_GROWTH, SMALLEST_GROWTH = 1 / 16, 1 / 1024  # shares by which lack of fit grows where rods yield by it
 MOST_TOLD = 3  # events in an account besides the message
-TOLD = (
-    "free body",
-    "mechanism",
-    "plastic mechanism",
-    "snap-through",
-    "bifurcation",
-    "note",
-)  # kinds of events that messages repeat
+# Kinds of events that messages repeat.
+TOLD = ("free body", "mechanism", "plastic mechanism", "snap-through", "bifurcation", "note")
 NEARLY_SOFT = 1e-9  # of the rods' stiffness: a note about a motion that is resisted less
 UNBALANCED = 1e-6  # of the largest force: a larger unbalanced force is no equilibrium
 UNCHANGED = 1e-12  # of the load: a smaller change is round-off

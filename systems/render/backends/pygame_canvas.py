@@ -120,9 +120,8 @@ class Canvas:
     # --- symbols and texts ---------------------------------------------------------------------------
 
     def _stamps(self, surface: pygame.Surface, mark: Stamps) -> None:
-        at = np.clip(
-            mark.at, -1e6, 1e6
-        )  # pixels; so far away it is not seen, and can be counted in whole numbers
+        # Pixels; so far away it is not seen, and can be counted in whole numbers.
+        at = np.clip(mark.at, -1e6, 1e6)
         fine = np.floor(at * _PHASES + 0.5).astype(np.int64)
         whole, phase = np.divmod(fine, _PHASES)
         pairs = []

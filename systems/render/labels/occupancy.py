@@ -93,9 +93,8 @@ class Occupancy:
                 [not blocked[top:low, left:right].any() for left, top, right, low in cells.tolist()], bool
             )
         left, top, right, bottom = cells.T
-        before = np.zeros(
-            (height + 1, width + 1), dtype=np.int32
-        )  # how many are above and to the left of each corner
+        # How many are above and to the left of each corner.
+        before = np.zeros((height + 1, width + 1), dtype=np.int32)
         blocked.cumsum(axis=0, dtype=np.int32).cumsum(axis=1, out=before[1:, 1:])
         free: Truths = before[bottom, right] - before[top, right] == before[bottom, left] - before[top, left]
         return free

@@ -54,10 +54,8 @@ _LEAST = 24.0  # points that diagrams have towards the legend and the rim, where
 _LARGEST, _FAR = 1e100, 1e6  # kN or kN·m, pixels: what is beyond is left out
 _STEPS = (8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0)
 _TOO_FLAT, _ENLARGED = 0.05, 0.3  # of the room: loads (one point per kN) below which, up to which, to enlarge
-_SHORTEST, _SHORTEST_WITH_VALUE = (
-    6.0,
-    24.0,
-)  # points, of rods with a diagram; values of others would only hide them
+# Points, of rods with a diagram; values of others would only hide them.
+_SHORTEST, _SHORTEST_WITH_VALUE = 6.0, 24.0
 _MANY = 300  # rods, above which diagrams of those that bend are outlines
 _PIECES, _PIECE = 1_440, 5.0  # of all diagrams of rods that bend, at most; points, or longer
 _ROOM, _SHARE = 1.25, 0.3  # of the room of force diagrams; of the largest shear, the least that fills it with N
@@ -70,27 +68,14 @@ _ZERO = 2.5  # points, radius of the mark of a zero point
 _INSIDE = 0.02  # share of a rod, from which on a zero point or an extreme is not at its end
 _STRAIGHT = 0.9  # cosine of the turn at a joint up to which two rods are one member
 _ALONG = np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9])  # of how far the value of a rectangle can go along it
-_SLIDES = (
-    (0.0, 0.0),
-    (0.5, 0.5),
-    (-0.5, 1.0),
-    (1.0, 2.0),
-    (-1.0, -1.0),
-    (1.5, 4.0),
-)  # between ends, and at one
+# Between ends, and at one.
+_SLIDES = ((0.0, 0.0), (0.5, 0.5), (-0.5, 1.0), (1.0, 2.0), (-1.0, -1.0), (1.5, 4.0))
 _GAP = 1.0  # points between a rod and a value beside it
 _NEAR = 42.0  # points along a rod, or two steps: so far from its end stands a value, but for the last place
-_INSETS = (
-    (0.0, 0.0),
-    (6.0, 6.0),
-    (12.0, -6.0),
-    (18.0, 12.0),
-    (25.0, -12.0),
-    (33.0, 18.0),
-)  # points from an end, and along from a value between, of places where its line may end
-_ON_RODS = np.array(
-    [0.5, 0.35, 0.65, 0.2, 0.8, 0.28, 0.72, 0.12, 0.88, 0.43, 0.57]
-)  # shares, where the lines may end, too
+# Points from an end, and along from a value between, of places where its line may end.
+_INSETS = ((0.0, 0.0), (6.0, 6.0), (12.0, -6.0), (18.0, 12.0), (25.0, -12.0), (33.0, 18.0))
+# Shares, where the lines may end, too.
+_ON_RODS = np.array([0.5, 0.35, 0.65, 0.2, 0.8, 0.28, 0.72, 0.12, 0.88, 0.43, 0.57])
 _PLACES = 3  # of values of a rod: start, end, between
 
 

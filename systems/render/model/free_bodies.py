@@ -25,11 +25,8 @@ MOST = 150  # rods that are taken apart: of more, arrows would hide one another
 SHORTEST = 74.0  # points: shorter rods stay whole, since there is no room for arrows
 _CLEAR = math.cos(math.radians(24.0))  # of the angle between an arrow and the rods that leaves both readable
 _ASIDE = 10.0  # points by which an arrow stands beside a rod where all is taken
-_PIECES, _ARC, _APART = (
-    16,
-    9.0,
-    4.0,
-)  # of a bent rod; points: radius of the arrow of a moment at its end, to a value
+# Of a bent rod; points: radius of the arrow of a moment at its end, to a value.
+_PIECES, _ARC, _APART = 16, 9.0, 4.0
 _SMALLEST_SHARE = 1e-3  # of the largest force: a smaller one of inertia is told, not drawn
 
 

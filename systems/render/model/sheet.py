@@ -33,10 +33,8 @@ MANY = 2000  # rods, above which details of single elements are left out
 # Directions by quarter turns clockwise, in pixels: right, down, left, up.
 DIRECTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 
-_SMALLEST = (
-    0.6,
-    5.0,
-)  # points, radius: of particles where more would hide short rods, and that can be seen and hit
+# Points, radius: of particles where more would hide short rods, and that can be seen and hit.
+_SMALLEST = (0.6, 5.0)
 _JOINT = 0.7  # radius of small rigid joints, of the usual one
 
 

@@ -21,15 +21,8 @@ from pinjoint.systems.render.ui.overlays import BAR
 SLIDER = "slider"  # the last word of the actions of what hits one
 _SIZES = 11.0, 10.0, 9.0  # points of its type, the largest in which the title stands whole beside the value
 _KNOB = 5.0  # points, its radius
-_FIRST = (
-    "place",
-    "rod",
-    "rigid",
-    "support",
-    "force",
-    "load",
-    "toggle help",
-)  # the tools, if the toolbar has them
+# The tools, if the toolbar has them.
+_FIRST = ("place", "rod", "rigid", "support", "force", "load", "toggle help")
 
 
 def put_controls(paper: Paper, model: Model, view: View, theme: Theme) -> None:

@@ -39,17 +39,11 @@ PROPERTIES = marked("Properties")  # the heading of an element's own boxes, wher
 _WIDEST, _EDGE = 1500.0, 16.0  # points that tiles spread over, and around all
 _SECTION, _READING, _GAP = 28.0, 20.0, 10.0  # points: of a heading, of a result, between boxes
 _MOST_READINGS = 0.4  # share of the height that results take without being scrolled
-_TILE, _TILE_GAP, _CAPTION, _PROPORTION = (
-    172.0,
-    16.0,
-    38.0,
-    0.6,
-)  # points across a tile, between, below; of its picture
+# Points across a tile, between, below; of its picture.
+_TILE, _TILE_GAP, _CAPTION, _PROPORTION = 172.0, 16.0, 38.0, 0.6
 _PILL, _PILL_WIDTH = 40.0, 184.0  # points: tiles without pictures
-_BESIDE, _NAMES = (
-    985.0,
-    (412.0, 492.0),
-)  # points of width from which the name stands beside the heading; that it takes
+# Points of width from which the name stands beside the heading; that it takes.
+_BESIDE, _NAMES = 985.0, (412.0, 492.0)
 _LOWEST, _LEAST_PICTURE = 0.65, 24.0  # of a picture's height that it keeps where one more row fits then; points
 _SECTIONS_SEEN = 2  # with pictures, that begin in sight in any window
 _EXPLAINED, _MOST_EXPLAINED = 2, 6  # lines of explanation: of boxes, and at most

@@ -17,10 +17,8 @@ from pinjoint.systems.render.ui.buttons import button, ink_of
 from pinjoint.systems.render.ui.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Scroll, Text
 
 _EDGE, _GAP = 14.0, 8.0  # points: around all, between parts
-_TEXTS = (
-    (14.0, 1.0),
-    (12.0, 0.5),
-)  # points of type, and the share of usual gaps; the first in which all is in sight
+# Points of type, and the share of usual gaps; the first in which all is in sight.
+_TEXTS = ((14.0, 1.0), (12.0, 0.5))
 _BESIDE, _SIGN = 210.0, 22.0  # points that buttons take at the right end of a strip, and a sign before a text
 _DOT = 3.5  # points, radius of a task's dot
 _SIGNS = {

@@ -15,12 +15,8 @@ from pinjoint.systems.render.ui.buttons import closing
 from pinjoint.systems.render.ui.layout import Column, Drawn, Paper, Part, Plate, Row, Text
 from pinjoint.systems.render.ui.plots import draw_plot
 
-_EDGE, _PAD, _GAP, _BETWEEN = (
-    10.0,
-    9.0,
-    16.0,
-    6.0,
-)  # points: to edges, in a panel, name to value, between panels
+# Points: to edges, in a panel, name to value, between panels.
+_EDGE, _PAD, _GAP, _BETWEEN = 10.0, 9.0, 16.0, 6.0
 _SIZE, _CLOSE = 12.0, 20.0  # points: of type, and across the button that closes a panel
 _PLOT, _LEAST_PLOT = 150.0, 84.0  # points, height of a plot with its axes, and where there is little room
 
