@@ -103,11 +103,7 @@ class Rod(Handle):
         overrides="rest_length",
     )
     tensile_strength: Field[float | None] = Field(
-        "kN",
-        nullable=True,
-        absent="unlimited",
-        minimum=0.0,
-        doc="Tension at which it yields; 0: unlimited.",
+        "kN", nullable=True, absent="unlimited", minimum=0.0, doc="Tension at which it yields; 0: unlimited."
     )
     compressive_strength: Field[float | None] = Field(
         "kN",
@@ -159,8 +155,7 @@ class Rod(Handle):
         doc="Force per unit of original length, all along it; its direction does not turn with the rod.",
     )
     temperature_gradient: Field[float] = Field(
-        "K/m",
-        doc="How much warmer it gets per metre of depth towards its left side, seen from start to end.",
+        "K/m", doc="How much warmer it gets per metre of depth towards its left side, seen from start to end."
     )
     bending_damping: Field[float | None] = Field(
         "kN·m·s",

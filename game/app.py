@@ -24,12 +24,7 @@ from pinjoint.components.view import MAGNIFICATIONS, View, magnified
 from pinjoint.documents import library, models
 from pinjoint.documents.autosave import Autosave, unkept
 from pinjoint.documents.open_documents import ModelFile, OpenDocument
-from pinjoint.documents.preferences import (
-    DEFAULT_THEME,
-    preferred,
-    preferred_place,
-    remember,
-)
+from pinjoint.documents.preferences import DEFAULT_THEME, preferred, preferred_place, remember
 from pinjoint.editor.frame import Frame
 from pinjoint.editor.scenes.load import Load
 from pinjoint.interrupts import closed_by_signals

@@ -32,13 +32,7 @@ from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES
 from pinjoint.systems.collision.overlaps import PARTING
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program import cache
-from pinjoint.systems.program.compiler import (
-    Choice,
-    Compile,
-    GeneratedModule,
-    forget_unused,
-    interpreted_here,
-)
+from pinjoint.systems.program.compiler import Choice, Compile, GeneratedModule, forget_unused, interpreted_here
 from pinjoint.systems.program.reordered import make_program
 from pinjoint.systems.program.writer import read_sources
 from pinjoint.systems.render.backends.raster import RASTER

@@ -35,13 +35,7 @@ from pinjoint.systems.physics.system import (
 from pinjoint.systems.plasticity.system import FirstYield, Strength, Yielding
 from pinjoint.systems.program import cache
 from pinjoint.systems.program.binding import is_our_own
-from pinjoint.systems.program.compiler import (
-    LARGE,
-    LONGEST_WORK,
-    Choice,
-    Compile,
-    GeneratedModule,
-)
+from pinjoint.systems.program.compiler import LARGE, LONGEST_WORK, Choice, Compile, GeneratedModule
 from pinjoint.systems.program.program import module_of
 from pinjoint.systems.program.writer import kind_of
 from pinjoint.systems.render.backends.raster import RASTER, Raster, load_raster

@@ -36,15 +36,7 @@ from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.base import Phase, System
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.dividing import divide
-from pinjoint.systems.input.actions import (
-    ACTIONS,
-    FILES,
-    FORMS,
-    LIVE,
-    SIMULATION,
-    TABLE,
-    TEXT,
-)
+from pinjoint.systems.input.actions import ACTIONS, FILES, FORMS, LIVE, SIMULATION, TABLE, TEXT
 from pinjoint.systems.run.system import Time
 from pinjoint.systems.schedule import Plan
 

@@ -34,10 +34,7 @@ _ANSWERS = {
     "linear": marked("linear theory"),
     "exact": marked("exact theory"),
 }
-_ERRORS = {
-    "simulation_error": marked("error of simulation"),
-    "linear_error": marked("error of linear theory"),
-}
+_ERRORS = {"simulation_error": marked("error of simulation"), "linear_error": marked("error of linear theory")}
 _VALUES = _ANSWERS | _ERRORS  # of a quantity of an element, with their titles
 
 Found = dict[str, Any]

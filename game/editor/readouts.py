@@ -43,15 +43,8 @@ NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 NO_ENERGY = 1e-5  # of the largest energy: less is shown as 0 beside it
 
 _BEFORE_SIGNS = re.compile("([+−=]) ")  # where a sum may be broken
-_WAYS = {
-    "simulation": marked("the run"),
-    "linear": marked("linear theory"),
-    "exact": marked("exact theory"),
-}
-_WORST = {
-    "simulation": marked("largest error of the run"),
-    "linear": marked("largest error of linear theory"),
-}
+_WAYS = {"simulation": marked("the run"), "linear": marked("linear theory"), "exact": marked("exact theory")}
+_WORST = {"simulation": marked("largest error of the run"), "linear": marked("largest error of linear theory")}
 _DISTURBED = {
     "edited": marked("edited during the run"),
     "pulled": marked("pulled during the run"),
@@ -241,10 +234,7 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
         )
     for event in settlement.events:
         if event.kind in JUMPS:
-            yield (
-                tr(event.kind),
-                tr("at {share} of the load", share=written.share(event.load_factor)),
-            )
+            yield (tr(event.kind), tr("at {share} of the load", share=written.share(event.load_factor)))
     for way, title in _WORST.items():
         worst = comparison.worst(way)
         if worst is not None:

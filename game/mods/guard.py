@@ -224,9 +224,7 @@ class Guard:
         def act(context: Context, pixel: Vector) -> None:
             if self.mod.off:
                 raise Refusal(
-                    "The mod '{name}' is switched off: {problem}",
-                    name=self.mod.name,
-                    problem=self.mod.problem,
+                    "The mod '{name}' is switched off: {problem}", name=self.mod.name, problem=self.mod.problem
                 )
             self.mod.call(what, changed, context, pixel, mistakes=(Refusal, FieldError))
 

@@ -24,14 +24,7 @@ from pinjoint.documents import models
 from pinjoint.documents.open_documents import file_of
 from pinjoint.mods import load
 from pinjoint.paths import EVERY, PathError, apply_override, energy_named, locate
-from pinjoint.sweeps.variation import (
-    FORMS,
-    MOST_VARIANTS,
-    SweepError,
-    Value,
-    Variation,
-    read_variations,
-)
+from pinjoint.sweeps.variation import FORMS, MOST_VARIANTS, SweepError, Value, Variation, read_variations
 
 FAILED = "failed"  # the status of a variant that could not be computed
 

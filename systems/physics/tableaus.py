@@ -61,9 +61,7 @@ class Tableau:
 
 # W. Kutta, Zeitschrift für Mathematik und Physik 46 (1901).
 CLASSICAL = Tableau(
-    order=4,
-    stages=({}, {0: 1 / 2}, {1: 1 / 2}, {2: 1.0}),
-    weights={0: 1 / 6, 1: 1 / 3, 2: 1 / 3, 3: 1 / 6},
+    order=4, stages=({}, {0: 1 / 2}, {1: 1 / 2}, {2: 1.0}), weights={0: 1 / 6, 1: 1 / 3, 2: 1 / 3, 3: 1 / 6}
 )
 
 # E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), II.5 and II.10:

@@ -360,10 +360,7 @@ _modules: dict[Any, GeneratedModule] = {}  # by source and kernels
 
 
 def generated(
-    name: str,
-    source: str,
-    kernels: Mapping[str, Callable[..., Any]],
-    needs: tuple[GeneratedModule, ...] = (),
+    name: str, source: str, kernels: Mapping[str, Callable[..., Any]], needs: tuple[GeneratedModule, ...] = ()
 ) -> GeneratedModule:
     """The module with this source, the same one each time. needs: as of GeneratedModule."""
     called = ((name, id(kernel)) for name, kernel in sorted(kernels.items()))

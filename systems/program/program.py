@@ -39,11 +39,7 @@ OBSERVED = {
     "particles": ("applied_force", "reaction", "applied_moment", "reaction_moment"),
     "rods": ("axial_force", "length", "strain", "yielding", "end_moment"),
 }
-_GIVEN = {
-    "fixed": "particles.fixed",
-    "tension": "rods.tension_limit",
-    "compression": "rods.compression_limit",
-}
+_GIVEN = {"fixed": "particles.fixed", "tension": "rods.tension_limit", "compression": "rods.compression_limit"}
 _ACTING = (
     ("particles.applied_force", "particles.applied_moment"),
     ("particles.reaction", "particles.reaction_moment"),
@@ -349,10 +345,7 @@ class Program:
             **dict.fromkeys(("power", "gained", "stage_power"), (len(ACCOUNTS),)),
             "work": (self.integrator.particle_rows, particles, coordinates),
             "rod_work": (_TANGENTS if of_rods and self._writer.bends else of_rods, rods),
-            "marks": (
-                max(rods, particles),
-                len(Mark) * len([*self._writer.branching, *self._writer.events]),
-            ),
+            "marks": (max(rods, particles), len(Mark) * len([*self._writer.branching, *self._writer.events])),
             "search": (len(Search),),
         }
 

@@ -39,15 +39,7 @@ from pinjoint.systems.program.interpreter import plain_function
 from pinjoint.systems.program.loops import RodLoop
 from pinjoint.systems.program.near_pairs import ARRAYS
 from pinjoint.systems.program.pasting import Insert, expanded, fragment, indented, pasted, source_of
-from pinjoint.systems.program.templates import (
-    driven,
-    events,
-    fixed_steps,
-    forces,
-    observing,
-    rods,
-    steps,
-)
+from pinjoint.systems.program.templates import driven, events, fixed_steps, forces, observing, rods, steps
 
 # --- what programs call things ---------------------------------------------------------------------
 
@@ -733,11 +725,7 @@ class Writer:
     def _observe(self) -> str:
         observed = self.lines(rods.observed, at_strength=str(_AT_STRENGTH), moments=self.end_moments())
         loop = RodLoop(self.shift, [*self.geometry(), *self._axial_force(), *observed])
-        return self.function(
-            observing.observe,
-            "entered",
-            rods=loop.one_by_one(),
-        )
+        return self.function(observing.observe, "entered", rods=loop.one_by_one())
 
 
 def read_sources(integrators: Iterable[Integrator]) -> None:

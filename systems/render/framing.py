@@ -26,14 +26,7 @@ from pinjoint.systems.render.marks import (
     Text,
     owners,
 )
-from pinjoint.systems.render.symbols import (
-    SUPPORT_DEPTH,
-    SYMBOLS,
-    arc,
-    circle,
-    icons,
-    turned_parts,
-)
+from pinjoint.systems.render.symbols import SUPPORT_DEPTH, SYMBOLS, arc, circle, icons, turned_parts
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import WEIGHTS
 

@@ -63,9 +63,7 @@ _Lines = tuple[Points, Points, float, Owners]  # from, to, reach in pixels besid
 
 
 def compose_all(
-    stages: Sequence[Stage],
-    theme: Theme,
-    placed: Callable[[Shown, View], Placed] | None = None,
+    stages: Sequence[Stage], theme: Theme, placed: Callable[[Shown, View], Placed] | None = None
 ) -> list[Picture]:
     """The pictures of all stages, in their order; placed: where labels of a stage were.
 
@@ -80,11 +78,7 @@ def compose_all(
 
 
 def compose(
-    model: Shown,
-    view: View,
-    theme: Theme,
-    placed: Placed | None = None,
-    others: Sequence[Picture] = (),
+    model: Shown, view: View, theme: Theme, placed: Placed | None = None, others: Sequence[Picture] = ()
 ) -> Picture:
     """The model (or form, or toolbar, or table) as seen in a view, as marks in pixels. Reads it, changes nothing.
 

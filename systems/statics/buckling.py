@@ -19,14 +19,7 @@ from pinjoint.systems.statics.bending import needed_parts
 from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised, upright
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, divide_named, rod_names
-from pinjoint.systems.statics.factor import (
-    SOFT,
-    Factor,
-    pseudo_random,
-    regular,
-    shifted,
-    unresisted,
-)
+from pinjoint.systems.statics.factor import SOFT, Factor, pseudo_random, regular, shifted, unresisted
 from pinjoint.systems.statics.state import Start
 from pinjoint.systems.statics.theory import FULL, linear
 

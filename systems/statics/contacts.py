@@ -304,11 +304,7 @@ class Sinking:
             penalty = float((np.hypot(*pace[:, :2].T) / moves).max(initial=0.0))
         penalty = max(penalty, SMALLEST_PENALTY)
         crept = creep(
-            self.path,
-            self.point,
-            residual,
-            penalty,
-            lambda to: float((_travel(to, start) / moves).max()),
+            self.path, self.point, residual, penalty, lambda to: float((_travel(to, start) / moves).max())
         )
         if crept is None:
             return None

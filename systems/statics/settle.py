@@ -76,10 +76,7 @@ class Settlement:
         """The message, or else the status, and the first of the other events."""
         others = [event.message for event in self.events if event.message not in self.message]
         more = len(others) - MOST_TOLD
-        said = [
-            self.message or tr("Result: {status}.", status=tr(self.status)),
-            *others[:MOST_TOLD],
-        ]
+        said = [self.message or tr("Result: {status}.", status=tr(self.status)), *others[:MOST_TOLD]]
         return joined(
             [*said, plural("And one more event.", "And {count} more events.", more) if more > 0 else ""]
         )
@@ -98,10 +95,7 @@ class Settlement:
 
 
 def settle(
-    model: Model,
-    factors: Sequence[float] | float = (1.0,),
-    theory: str = EXACT,
-    start: Start | None = None,
+    model: Model, factors: Sequence[float] | float = (1.0,), theory: str = EXACT, start: Start | None = None
 ) -> Settlement:
     """The equilibria at these load factors in turn, from a state (None: the present one); the model is unchanged.
 

@@ -23,11 +23,7 @@ class History:
     """
 
     def __init__(
-        self,
-        model: Model,
-        simulation: Simulation,
-        on_change: Callable[[Entry], None],
-        memory: int = MEMORY,
+        self, model: Model, simulation: Simulation, on_change: Callable[[Entry], None], memory: int = MEMORY
     ) -> None:
         self._done, self._undone = Log(memory), Log(memory)
         self._model = model

@@ -23,14 +23,7 @@ from pinjoint.systems.edit.picking import everything, pick, pick_grid, pick_line
 from pinjoint.systems.edit.placing import Movable, nudged, snapped
 from pinjoint.systems.edit.rods import delete
 from pinjoint.systems.forms.properties import counted, heading
-from pinjoint.systems.input.actions import (
-    ACTIONS,
-    IN_LESSONS,
-    IN_PICTURES,
-    LIVE,
-    SIMULATION,
-    actions_of,
-)
+from pinjoint.systems.input.actions import ACTIONS, IN_LESSONS, IN_PICTURES, LIVE, SIMULATION, actions_of
 from pinjoint.systems.render.picture import symbol_at
 
 action = actions_of("Select and edit")

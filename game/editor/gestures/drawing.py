@@ -16,11 +16,7 @@ from pinjoint.components.tags import Selected
 from pinjoint.components.view import BETWEEN, Preview, drawn_positions
 from pinjoint.editor.context import Context, Gesture, tell
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.edit.arrows import (
-    arrow_end,
-    arrow_value,
-    usual,
-)
+from pinjoint.systems.edit.arrows import arrow_end, arrow_value, usual
 from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_particle, pick_rod
 from pinjoint.systems.edit.placing import place, snapped, snapped_to_points
 from pinjoint.systems.edit.rods import check_ends, distance, join

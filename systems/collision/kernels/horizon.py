@@ -9,13 +9,7 @@ import math
 
 from pinjoint.systems.collision.columns import NONE, Count, Disc, Number, Reason
 from pinjoint.systems.collision.kernels import compiled
-from pinjoint.systems.collision.kernels.grid import (
-    emptied,
-    enclose,
-    enter,
-    neighbours,
-    set_layers,
-)
+from pinjoint.systems.collision.kernels.grid import emptied, enclose, enter, neighbours, set_layers
 from pinjoint.systems.collision.kernels.heap import queue_impact
 from pinjoint.systems.collision.kernels.persistent_contact import find_persistent, is_held
 from pinjoint.systems.collision.kernels.time_of_impact import (

@@ -8,15 +8,7 @@ its box; which contacts there are, and in which order, does not depend on when t
 
 import math
 
-from pinjoint.systems.collision.columns import (
-    NONE,
-    SHORTEST_SHARE,
-    Count,
-    Disc,
-    Number,
-    PilePair,
-    Reason,
-)
+from pinjoint.systems.collision.columns import NONE, SHORTEST_SHARE, Count, Disc, Number, PilePair, Reason
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.grid import emptied, enclose, enter, neighbours, set_layers, sort
 from pinjoint.systems.collision.kernels.persistent_contact import (

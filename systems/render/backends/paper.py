@@ -149,11 +149,7 @@ def _beside(row: Sequence[Block]) -> Flowable:
     columns = [width + gutter for width in widths[:-1]] + [widths[-1]]
     made = Table([[list(parts) for _, parts in row]], colWidths=columns, hAlign="LEFT")
     made.setStyle(
-        [
-            *_padded(0, 2),
-            ("RIGHTPADDING", (0, 0), (-2, -1), gutter),
-            ("VALIGN", (0, 0), (-1, -1), "TOP"),
-        ]
+        [*_padded(0, 2), ("RIGHTPADDING", (0, 0), (-2, -1), gutter), ("VALIGN", (0, 0), (-1, -1), "TOP")]
     )
     return made
 
@@ -255,10 +251,7 @@ def _padded(right: float, below: float) -> list[tuple[Any, ...]]:
 
 
 def as_paper(
-    title: str,
-    made_of: Callable[[Layout], Sequence[Flowable]],
-    foot: str,
-    layouts: Sequence[Layout] = LAYOUTS,
+    title: str, made_of: Callable[[Layout], Sequence[Flowable]], foot: str, layouts: Sequence[Layout] = LAYOUTS
 ) -> bytes:
     """The contents of a PDF file: what is made in a layout, in the largest with which it takes the fewest pages of A4.
 

@@ -17,13 +17,7 @@ from numpy.typing import NDArray
 from pinjoint.components.camera import Viewport
 from pinjoint.components.wording import UNPRINTABLE
 from pinjoint.systems.program.compiler import Choice, Compile
-from pinjoint.systems.render.backends.raster import (
-    Clip,
-    Pixels,
-    Raster,
-    load_raster,
-    stroke_coverage,
-)
+from pinjoint.systems.render.backends.raster import Clip, Pixels, Raster, load_raster, stroke_coverage
 from pinjoint.systems.render.clip import clip_polygon
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Panel, Picture, Stamps, Strokes, Text
 from pinjoint.systems.render.symbols import RIM, turned_parts

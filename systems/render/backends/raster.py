@@ -93,12 +93,7 @@ def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     lines = ["from pinjoint.systems.program.kernel import kept", ""]
     for name, signature in SIGNATURES.items():
         parameters = ", ".join(inspect.signature(getattr(kernels, name)).parameters)
-        lines += [
-            f'@kept("{signature}")',
-            f"def {name}({parameters}):",
-            f"    {name}_kernel({parameters})",
-            "",
-        ]
+        lines += [f'@kept("{signature}")', f"def {name}({parameters}):", f"    {name}_kernel({parameters})", ""]
     return "\n".join(lines), {f"{name}_kernel": getattr(kernels, name) for name in SIGNATURES}
 
 

@@ -318,13 +318,7 @@ def _codes(labels: Sequence[Label], occupancy: Occupancy) -> tuple[Codes, Codes]
     return np.array(own, dtype=np.int64), np.array(of, dtype=np.int64)
 
 
-def _attempts(
-    labels: Sequence[Label],
-    of: Rows,
-    held: Truths,
-    cells: Rows,
-    occupancy: Occupancy,
-) -> Rows:
+def _attempts(labels: Sequence[Label], of: Rows, held: Truths, cells: Rows, occupancy: Occupancy) -> Rows:
     """The places free of panels and lines, all of one label in the order in which to try them, then those of the next.
 
     of: the label of each place. held: whether the label was there in the last picture. cells: (k, 4) of each place.

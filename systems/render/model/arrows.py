@@ -303,13 +303,7 @@ def _arrow_places(
 
 
 def _write_forces(
-    sheet: Sheet,
-    name: str,
-    of: list[Owner],
-    parts: Owners,
-    value: Values,
-    start: Points,
-    end: Points,
+    sheet: Sheet, name: str, of: list[Owner], parts: Owners, value: Values, start: Points, end: Points
 ) -> None:
     """The size of the force at each arrow, of which `parts` are the keys, between points of which `end` is outside."""
     field, which = parts

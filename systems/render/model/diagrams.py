@@ -38,11 +38,7 @@ from pinjoint.systems.render.model.values import (
 from pinjoint.systems.render.symbols import dashed
 from pinjoint.systems.render.theme import Colour, faded
 
-NAMES = {
-    AXIAL: marked("axial force N"),
-    MOMENT: marked("bending moment M"),
-    SHEAR: marked("shear force V"),
-}
+NAMES = {AXIAL: marked("axial force N"), MOMENT: marked("bending moment M"), SHEAR: marked("shear force V")}
 _UNITS = {AXIAL: "kN", MOMENT: "kN·m", SHEAR: "kN"}
 _BESIDE = ("load", "load per length", "load moment", "reaction", "reaction moment", "ghost")
 EXPLAINED = {  # in the legend, at most: what they show, then what stands beside them

@@ -108,12 +108,7 @@ def _draw_bodies(sheet: Sheet, start: Points, end: Points, gap: Values) -> None:
 
 
 def _draw_bending(
-    sheet: Sheet,
-    known: Apart,
-    bearing: Truths,
-    rod_ends: tuple[Points, Points],
-    along: Points,
-    largest: float,
+    sheet: Sheet, known: Apart, bearing: Truths, rod_ends: tuple[Points, Points], along: Points, largest: float
 ) -> None:
     """Shears and moments of members in the gaps: those on the ends of rods, and the opposite ones on their joints."""
     if not sheet.is_frame:

@@ -218,13 +218,7 @@ def draw_arcs(
 
 
 def write_moment(
-    sheet: Sheet,
-    at: Points,
-    radius: float,
-    moment: float,
-    colour: Colour,
-    key: tuple[str, int],
-    text: str = "",
+    sheet: Sheet, at: Points, radius: float, moment: float, colour: Colour, key: tuple[str, int], text: str = ""
 ) -> None:
     """Write the size of a moment outside its arrow; text: in place of the number as a person gave it."""
     text = text or f"{written.given(abs(moment), written.DIGITS)}{' kN·m' if sheet.view.has_units else ''}"

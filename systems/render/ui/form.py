@@ -22,17 +22,7 @@ from pinjoint.systems.render.typography import ALL, font_size, in_rows, text_wid
 from pinjoint.systems.render.ui.buttons import button, closing
 from pinjoint.systems.render.ui.form_box import bare_box, is_short, titled_box
 from pinjoint.systems.render.ui.help import put_help
-from pinjoint.systems.render.ui.layout import (
-    Column,
-    Drawn,
-    Gap,
-    Paper,
-    Part,
-    Plate,
-    Row,
-    Scroll,
-    Text,
-)
+from pinjoint.systems.render.ui.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Scroll, Text
 from pinjoint.systems.render.ui.thumbnails import thumbnail
 
 PROPERTIES = marked("Properties")  # the heading of an element's own boxes, where its results stand above them
