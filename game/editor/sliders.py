@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+from pinjoint.components import written
 from pinjoint.components.field import Field
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, decimals, joined, marked, tr
@@ -56,7 +57,7 @@ def sliders_of(context: Context) -> SliderStack:
     if scale and high and model.solution is not None:
         factor = model.settings.load_steps[-1]
         share = loads(model.settings).share_of(factor)
-        value = decimals(f"× {factor:.4g}".replace("-", "−"))
+        value = f"× {written.given(factor, 4)}"
         scale.append(Control(LOAD, tr("load factor"), value, share, "× 1", pressed=factor == 1.0))
     own = (control_of(model, key, slider) for key, slider in enumerate(model.sliders))
     return SliderStack((*scale, *(control for control in own if control is not None)), ABOVE)
@@ -66,7 +67,7 @@ def scale_control(settings: Settings) -> Control:
     """The control of the displacement scale."""
     scale, automatic = settings.displacement_scale, settings.prescribed_displacement_scale is None
     share = scales(settings).share_of(max(scale, 1.0))
-    value = decimals(f"× {scale:.4g}")
+    value = f"× {written.given(scale, 4)}"
     return Control(SCALE, tr("displacements"), value, share, tr("auto"), pressed=automatic)
 
 

@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 62_644,
-    "files": 362,
-    "names": 3_495,  # functions, classes and constants of modules
-    "public names": 2_115,
-    "numbers": 1_378,  # other than 0, 1 and 2, in constants and defaults
+    "lines": 63_618,
+    "files": 366,
+    "names": 3_554,  # functions, classes and constants of modules
+    "public names": 2_156,
+    "numbers": 1_416,  # other than 0, 1 and 2, in constants and defaults
     "registers": 39,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 50_034,
+    "lines of tests": 51_388,
 }
 
 

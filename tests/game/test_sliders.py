@@ -61,6 +61,9 @@ def test_the_displacement_scale_is_dragged_and_goes_back_to_automatic() -> None:
     assert session.settings.displacement_scale == 100.0
     session.press("click", (button.left + 3, button.top + 3))
     assert session.settings.prescribed_displacement_scale == 100.0  # kept from now on
+    session.settings.displacement_scale = 20_000.0
+    session.update_view()
+    assert place(session, "displacements").control.value == "× 20000"
 
 
 def test_without_rods_or_with_the_legend_hidden_there_is_no_slider() -> None:
