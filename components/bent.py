@@ -246,7 +246,8 @@ class _State(NamedTuple):
 def _state(model: Model, rows: Rows) -> _State:
     revision, found = model.bent
     if revision != model.revision:  # a picture asks nine times
-        found = _states(model)
+        with np.errstate(invalid="ignore"):  # of rods whose ends are nowhere, which are not drawn
+            found = _states(model)
         model.bent = model.revision, found
     return _State(*(column[rows] for column in found))
 
@@ -263,8 +264,7 @@ def _states(model: Model) -> _State:
     across = along_and_across(model.share * rods.distributed_force, along)[1]
     rigid = rigid_slopes(rods, particles.rotation[rods.between], chord_rotation(model))
     start, end = (length[:, None] * all_slopes(rods, rigid, across)).T
-    bent = rods.bending_stiffness > 0.0
-    zero = np.zeros(len(bent))
+    bent, zero = rods.bending_stiffness > 0.0, np.zeros(rods.count)
     sag = np.divide(across * rods.rest_length**4, 24.0 * rods.bending_stiffness, out=zero.copy(), where=bent)
     cubic = _cubic(start, end)
     cubic[~bent] = 0.0

@@ -19,7 +19,7 @@ MOST = {
     "public names": 2_156,
     "numbers": 1_416,  # other than 0, 1 and 2, in constants and defaults
     "registers": 39,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 51_392,
+    "lines of tests": 51_393,
 }
 
 

@@ -113,6 +113,7 @@ def test_what_is_symmetrical_has_symmetrical_supports() -> None:
     assert freest_sides(along_x, upright, np.array([False, True])).tolist() == [LEFT, RIGHT]
 
 
+@pytest.mark.filterwarnings("error")
 def test_positions_that_are_no_numbers_are_left_out() -> None:
     model = triangle()
     model.writable("particles.displacement")[1] = (np.nan, np.inf)
