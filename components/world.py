@@ -447,11 +447,8 @@ class World:
     def apply(self, command: Command) -> Command:
         """Apply a command without telling the log; returns its exact inverse."""
         if self.before_change is not None and self._concerns_runs(command):
-            if self.solution is None:
+            with self.own_state():
                 self.before_change()
-            else:
-                with self.own_state():
-                    self.before_change()
         match command:
             case Create():
                 return self._create(command)

@@ -201,13 +201,13 @@ class _Settling:
         point = Point(0.0 * moved, start.plastic_strain, 0.0, self.point.response, 0.0)
         while share < 1.0 and step > SMALLEST_GROWTH:
             further = min(share + step, 1.0)
-            path, unyielding = (
-                Path(of.grown(further), self._nothing, self._nothing) for of in (self.structure, elastic)
-            )
+            path = Path(self.structure.grown(further), self._nothing, self._nothing)
             known = np.where(self.structure.unknown, point.displacement, further * moved)
             found = path.correct(point, known, 0.0, None)
-            if found is None and (near := unyielding.correct(point, known, 0.0, None)) is not None:
-                found = path.correct(point, near.displacement, 0.0, None)
+            if found is None:
+                unyielding = Path(elastic.grown(further), self._nothing, self._nothing)
+                near = unyielding.correct(point, known, 0.0, None)
+                found = None if near is None else path.correct(point, near.displacement, 0.0, None)
             if found is None:
                 step *= 0.5
             else:

@@ -94,8 +94,8 @@ def draw_deflected(sheet: Sheet) -> None:
     rows, shares = np.arange(len(sheet.ends)), np.array([0.0, 0.5, 1.0])
     axes = Axes.of(model, rows, scale)
     away = sheet.view.camera.scale * np.abs(axes.points(shares) - Axes.of(model, rows).points(shares))
-    start, end = _lines(sheet, axes, rows)
     if (away > _SHAPE_WIDTH * sheet.unit).any():
+        start, end = _lines(sheet, axes, rows)
         sheet.occupancy.line(start, end, FAINT)
         sheet.explain("deflected", start, end)
         colour = faded(sheet.colour_of("sketch"), _SHAPE_OPACITY)

@@ -497,12 +497,11 @@ def _displacements(sheet: Sheet) -> list[str]:
     model, scale = sheet.model, sheet.model.settings.displacement_scale
     if scale != 1.0:
         return [] if sheet.view.slider_places else [tr("displacements ×{scale:g}", scale=scale)]
+    if not (sheet.view.advises and model.rods.count):
+        return []
     inside = farthest(model, np.flatnonzero(model.rods.bending_stiffness > 0.0))[0]
     largest = float(np.append(inside, np.abs(model.particles.displacement)).max(initial=0.0))
-    if (
-        not (sheet.view.advises and model.rods.count)
-        or not _NOISE < largest * sheet.view.camera.scale < sheet.unit
-    ):
+    if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
         return []
     return [
         tr(
