@@ -5,20 +5,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pinjoint.components.model import Model
 from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.documents.document import document
-from pinjoint.documents.models import load
 from pinjoint.editor import view_model
 from pinjoint.session import Session
 from pinjoint.systems.base import Phase
 from pinjoint.systems.render.labels.placing import Placed
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
-from pinjoint.systems.statics.settle import settle
-from pinjoint.systems.statics.state import Start
 from pinjoint.systems.statics.vibration import Vibrations
 from tests.reference import bits
+from tests.reference.sessions import solved_afresh
 
 GERBER: dict[str, Any] = {  # 3 m + 2 m to the hinge, 3 m, q = 12 kN/m
     "format": "pinjoint model",
@@ -44,15 +41,8 @@ def shown(source: Any) -> Session:
     return session
 
 
-def alone(model: Model, theory: str) -> dict[str, Any]:
-    """The columns of the equilibrium of a model's document, read into another model."""
-    fresh = load(document(model))
-    start = Start.undeformed(fresh, np.zeros(fresh.rods.count))
-    return settle(fresh, fresh.settings.load_steps, theory, start).final.columns
-
-
 def assert_is_solution(session: Session, theory: str) -> None:
-    for name, wanted in alone(session.model, theory).items():
+    for name, wanted in solved_afresh(session.model, theory).final.columns.items():
         np.testing.assert_array_equal(session.model.column(name), wanted, err_msg=name)
 
 

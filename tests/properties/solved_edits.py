@@ -19,12 +19,9 @@ from pinjoint.components.load import Load
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, nodes
-from pinjoint.documents.document import document
-from pinjoint.documents.models import load
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.statics.settle import settle
-from pinjoint.systems.statics.state import Start
 from tests.reference import frame_theory, frames
+from tests.reference.sessions import solved_afresh
 
 BASES = (
     *("portal", "gerber_beam", "two_storey_frame", "vierendeel", "three_hinged_arch", "braced_portal"),
@@ -125,14 +122,8 @@ def attempt(seed: int, actions: int, seen: Counter[str]) -> None:
 def check(session: Session, seen: Counter[str]) -> None:
     """What is shown is the solution of what is there."""
     model, shown = session.model, session.document.statics
-    fresh = load(document(model))
     try:
-        wanted = settle(
-            fresh,
-            fresh.settings.load_steps,
-            fresh.settings.theory,
-            Start.undeformed(fresh, np.zeros(fresh.rods.count)),
-        )
+        wanted = solved_afresh(model)
     except ValueError:
         assert shown.settlement is None
         assert not _is_usual(model), shown.problem

@@ -3,6 +3,7 @@
 import itertools
 from typing import Any
 
+from pinjoint import Session
 from tests.reference.models import model
 
 EA, EI = 1.2e6, 8000.0
@@ -144,3 +145,16 @@ FRAMES = {
     "vierendeel": vierendeel,
     "all supports": all_supports,
 }
+
+
+def simple_beam(q: float = -8.0, length: float = 4.0) -> Session:
+    """A beam on two supports under a distributed force (kN/m), in statics by first-order theory."""
+    source = frame(
+        {"A": (0.0, 0.0, PINNED), "B": (length, 0.0, ROLLER)}, {"A B": {"distributed_force": [0, q]}}
+    )
+    session = Session.open(source)
+    session.resize(1000, 720)
+    session.press("q")
+    session.frame(0.0)
+    session.view.fit(session.model)
+    return session

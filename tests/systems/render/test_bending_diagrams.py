@@ -28,6 +28,7 @@ from tests.systems.render.frame_models import (
     frame,
     gerber_at_rest,
     portal_at_rest,
+    simple_beam,
 )
 from tests.systems.render.pictures import LIGHT
 
@@ -150,19 +151,6 @@ def test_a_constant_moment_is_told_once() -> None:
     assert len([text for text in texts if text.startswith("3.0") and text.endswith("kN·m")]) == 2, (
         "and the reaction"
     )
-
-
-def simple_beam(q: float = -8.0, length: float = 4.0) -> Session:
-    """A beam on two supports under a distributed force (kN/m), in statics by first-order theory."""
-    source = frame(
-        {"A": (0.0, 0.0, PINNED), "B": (length, 0.0, ROLLER)}, {"A B": {"distributed_force": [0, q]}}
-    )
-    session = Session.open(source)
-    session.resize(1000, 720)
-    session.press("q")
-    session.frame(0.0)
-    session.view.fit(session.model)
-    return session
 
 
 def deflected(session: Session) -> np.ndarray:

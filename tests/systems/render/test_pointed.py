@@ -13,7 +13,7 @@ from pinjoint.systems.render.marks import Panel, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from tests.reference.boxes import overlap, text_box
-from tests.systems.render.frame_models import EI, PINNED, ROLLER, frame
+from tests.systems.render.frame_models import EI, simple_beam
 
 LIGHT = load_theme("light")
 
@@ -149,19 +149,6 @@ def test_it_covers_no_value_in_the_narrow_sets_of_the_force_method(size: tuple[i
 LOAD, SPAN = 8.0, 4.0  # kN/m, m
 
 
-def beam() -> Session:
-    """A simple beam AB under a uniform force, in statics by first-order theory."""
-    source = frame(
-        {"A": (0.0, 0.0, PINNED), "B": (SPAN, 0.0, ROLLER)}, {"A B": {"distributed_force": [0, -LOAD]}}
-    )
-    session = Session.open(source)
-    session.resize(1000, 720)
-    session.press("q")
-    session.frame(0.0)
-    session.view.fit(session.model)
-    return session
-
-
 def along(session: Session, x: float) -> Readout | None:
     """What is told with the pointer there on AB."""
     session.point(x, 0.0)
@@ -194,7 +181,7 @@ def assert_told(readout: Readout | None, x: float, load: float = LOAD) -> None:
 
 
 def test_pointing_along_a_member_tells_what_a_hand_calculates() -> None:
-    session = beam()
+    session = simple_beam(-LOAD, SPAN)
     for x in (0.5, 1.0, 3.5):
         assert_told(along(session, x), x)
     assert "rod AB, x = 350 cm" in compose(session.model, session.view, LIGHT).texts
@@ -205,7 +192,7 @@ def test_pointing_along_a_member_tells_what_a_hand_calculates() -> None:
 
 
 def test_a_click_pins_the_numbers_of_a_place_which_follow_edits() -> None:
-    session = beam()
+    session = simple_beam(-LOAD, SPAN)
     session.click(1.0, 0.0)
     session.update_view()
     assert session.view.pin is not None
@@ -228,7 +215,7 @@ def test_a_click_pins_the_numbers_of_a_place_which_follow_edits() -> None:
 
 
 def test_a_typed_distance_takes_pinned_numbers_there() -> None:
-    session = beam()
+    session = simple_beam(-LOAD, SPAN)
     session.click(1.0, 0.0)
     for character in "150.5":
         session.press(character)  # as a window tells a key, and the text that it writes
