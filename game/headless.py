@@ -26,7 +26,7 @@ from pinjoint.documents.open_documents import ModelFile, Source, file_of
 from pinjoint.editor.context import Context, Scene
 from pinjoint.editor.frame import HeadlessFrame
 from pinjoint.mods import load_all
-from pinjoint.mods.mod import heeding_mods
+from pinjoint.mods.mod import heeding_mods, last_fault
 from pinjoint.systems.base import DEFAULT_LIMIT, EVENT_INTERVAL, Phase, StopReason, System
 from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.edit.pull import Pull
@@ -111,7 +111,7 @@ class Headless(Context):
         The fault of a mod, the question or refusal of the scene, why the run stopped, a warning or a notice, then the
         remarks on a run at rest.
         """
-        said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
+        said = last_fault(self.faults_seen) or self.scenes.active.message or self.simulation.said or self.notice
         return joined([said, *(remark.message for remark in self.document.assessment.remarks)])
 
     # --- time --------------------------------------------------------------------------------------
@@ -167,7 +167,7 @@ class Headless(Context):
                 yield simulation
                 document.chronicle.look()
         finally:
-            if not self.time_passes:
+            if not self.scenes.time_passes:
                 document.history.end_run()
 
     @contextmanager

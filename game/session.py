@@ -30,7 +30,7 @@ from pinjoint.editor.sliders import sliders_of
 from pinjoint.editor.view_model import exaggerate, offer_tools, show
 from pinjoint.headless import Headless, forward
 from pinjoint.lessons.course import Course, take_up_lesson
-from pinjoint.mods.mod import blamed_on_mod
+from pinjoint.mods.mod import blamed_on_mod, last_fault
 from pinjoint.scripts.expectation import check
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.base import Phase, System
@@ -140,7 +140,7 @@ class Session(Headless):
     def _begin_document(self) -> None:
         """Show the document that is open now, with its sliders, from the first frame on."""
         model, view = self.model, self.view
-        self.show_state()
+        self.scenes.show_state(self)
         view.sliders = sliders_of(self)
         self._make_room()
         view.fit(model)
@@ -170,10 +170,7 @@ class Session(Headless):
 
         Raises ValueError if no key is called so.
         """
-        self.press_named(ACTIONS.key_named(key), pixel)
-
-    def press_named(self, key: str, pixel: Vector | None) -> None:
-        """Press a key or button by the name that bindings know it by, or type a text."""
+        key = ACTIONS.key_named(key)
         if key.startswith(TEXT):
             self.type(key.removeprefix(TEXT))
             return
@@ -187,12 +184,12 @@ class Session(Headless):
         here = self.scene, self.view.menu is not None, self.view.help > 0, press.hit and press.hit.action
         if key == "double click" and self._clicked not in (None, here):
             return  # its first click led here, and the second is not meant for what is here
-        if key == "escape" and self.fault and self.scene not in FORMS:
+        if key == "escape" and last_fault(self.faults_seen) and self.scene not in FORMS:
             self.faults_seen = len(EXTENSIONS.faults)
         elif press.action is not None:
             self.notice, self._clicked = "", here if key == "click" else None
             self._record(key, pixel)
-            if self.time_passes and self.has_program(self.simulation):
+            if self.scenes.time_passes and self.has_program(self.simulation):
                 self.document.get_ready()
             self.view.pressed = press.hit
             left = self._left_for_tools() if press.for_tools else ""

@@ -23,6 +23,7 @@ from pinjoint.editor.gestures.moving import Placing
 from pinjoint.editor.readouts import distance_at, pinned, readouts
 from pinjoint.editor.sliders import slider_stack
 from pinjoint.editor.toolbar import toolbar_of
+from pinjoint.mods.mod import last_fault
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
@@ -50,7 +51,7 @@ def offer_tools(context: Context) -> None:
 
 def exaggerate(context: Context) -> None:
     """Let the automatic displacement scale suit the model, but not in the middle of a drag."""
-    still = not context.time_passes or context.simulation.halted
+    still = not context.scenes.time_passes or context.simulation.halted
     if context.gesture is None and context.document.exaggeration.review(still=still) and still:
         context.view.follow(context.model)
 
@@ -285,8 +286,8 @@ def _state_word(context: Context, *, brief: bool) -> str:
 def _problem(context: Context) -> str:
     """Why the run stopped, or a warning though it goes on."""
     simulation = context.simulation
-    if context.fault:
-        return joined([context.fault, tr("Press Esc to close this message.")])
+    if fault := last_fault(context.faults_seen):
+        return joined([fault, tr("Press Esc to close this message.")])
     if simulation.reason is StopReason.DIVERGED and simulation.halted:
         return simulation.message
     return simulation.warning
