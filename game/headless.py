@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.load import Load
 from pinjoint.components.mistake import WrongValue
@@ -26,7 +27,7 @@ from pinjoint.documents.open_documents import ModelFile, Source, file_of
 from pinjoint.editor.context import Context, Scene
 from pinjoint.editor.frame import HeadlessFrame
 from pinjoint.mods import load_all
-from pinjoint.mods.mod import heeding_mods, last_fault
+from pinjoint.mods.mod import heeding_mods
 from pinjoint.systems.base import DEFAULT_LIMIT, EVENT_INTERVAL, Phase, StopReason, System
 from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.edit.pull import Pull
@@ -111,7 +112,12 @@ class Headless(Context):
         The fault of a mod, the question or refusal of the scene, why the run stopped, a warning or a notice, then the
         remarks on a run at rest.
         """
-        said = last_fault(self.faults_seen) or self.scenes.active.message or self.simulation.said or self.notice
+        said = (
+            EXTENSIONS.last_fault(self.faults_seen)
+            or self.scenes.active.message
+            or self.simulation.said
+            or self.notice
+        )
         return joined([said, *(remark.message for remark in self.document.assessment.remarks)])
 
     # --- time --------------------------------------------------------------------------------------

@@ -30,7 +30,7 @@ from pinjoint.editor.sliders import sliders_of
 from pinjoint.editor.view_model import exaggerate, offer_tools, show
 from pinjoint.headless import Headless, forward
 from pinjoint.lessons.course import Course, take_up_lesson
-from pinjoint.mods.mod import blamed_on_mod, last_fault
+from pinjoint.mods.mod import blamed_on_mod
 from pinjoint.scripts.expectation import check
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.base import Phase, System
@@ -72,8 +72,7 @@ class Session(Headless):
         super().__init__(model, systems, view, file, all_scenes(), seen)
         self.recorder: Any = None  # pinjoint.scripts.playing.Recorder, told of every press and change of size
         self._clicked: tuple[object, ...] | None = None  # what took the last press, if that was a click
-        # Of the window (pixels).
-        self.extent = self.view.camera.viewport.width, self.view.camera.viewport.height
+        self.extent = self.view.camera.viewport.width, self.view.camera.viewport.height  # of the window
         self.documents.on_leave, self.documents.on_begin = self._leave_document, self._begin_document
         offer_tools(self)
         self._begin_document()
@@ -175,7 +174,6 @@ class Session(Headless):
             self.type(key.removeprefix(TEXT))
             return
         if key.startswith(FILES):
-            self.notice = ""
             self._record(key, pixel)
             self._open_files(key.removeprefix(FILES).splitlines())
             return
@@ -184,7 +182,7 @@ class Session(Headless):
         here = self.scene, self.view.menu is not None, self.view.help > 0, press.hit and press.hit.action
         if key == "double click" and self._clicked not in (None, here):
             return  # its first click led here, and the second is not meant for what is here
-        if key == "escape" and last_fault(self.faults_seen) and self.scene not in FORMS:
+        if key == "escape" and EXTENSIONS.last_fault(self.faults_seen) and self.scene not in FORMS:
             self.faults_seen = len(EXTENSIONS.faults)
         elif press.action is not None:
             self.notice, self._clicked = "", here if key == "click" else None

@@ -191,8 +191,7 @@ class Scene:
 class Scenes:
     """The state machine: exactly one scene is active; a requested transition waits for `apply`.
 
-    hub: "pause" or "statics", whichever was active last; other scenes lead back there. time_passes: whether frames let time
-    pass in the open document.
+    hub: "pause" or "statics", whichever was active last; others lead back there. time_passes: frames let time pass.
     """
 
     def __init__(self, scenes: Sequence[Scene]) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import written
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, english, joined, listed, marked, plural, tr
 from pinjoint.components.model import Model
@@ -23,7 +24,6 @@ from pinjoint.editor.gestures.moving import Placing
 from pinjoint.editor.readouts import distance_at, pinned, readouts
 from pinjoint.editor.sliders import slider_stack
 from pinjoint.editor.toolbar import toolbar_of
-from pinjoint.mods.mod import last_fault
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
@@ -286,7 +286,7 @@ def _state_word(context: Context, *, brief: bool) -> str:
 def _problem(context: Context) -> str:
     """Why the run stopped, or a warning though it goes on."""
     simulation = context.simulation
-    if fault := last_fault(context.faults_seen):
+    if fault := EXTENSIONS.last_fault(context.faults_seen):
         return joined([fault, tr("Press Esc to close this message.")])
     if simulation.reason is StopReason.DIVERGED and simulation.halted:
         return simulation.message

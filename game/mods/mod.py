@@ -288,11 +288,6 @@ def check_mods(known: list[Mod] | None = None, time: float | None = None) -> Non
             raise ModError(joined([said, stopped]))
 
 
-def last_fault(seen: int) -> str:
-    """The mod that failed last and why; "" if no more failed than a person has seen."""
-    return EXTENSIONS.faults[-1] if len(EXTENSIONS.faults) > seen else ""
-
-
 def blamed_on_mod(error: BaseException) -> bool:
     """Switch off the mod from whose code an error came past all guards; False if it came from no mod's."""
     for mod in EXTENSIONS.mods:

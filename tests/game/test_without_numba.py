@@ -71,7 +71,6 @@ def test_commands_need_no_compiler(words: str, tmp_path: Path) -> None:
 
 WINDOW = f"""{WITHOUT}
 from pinjoint.app import App
-from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.documents import models
 
 for name in ("hyperstatic_yield", "pile"):
@@ -83,7 +82,7 @@ for name in ("hyperstatic_yield", "pile"):
     app.session.press("space")
     app.session.press("e")
     app.frame(1 / 60)
-    assert app.session.faults_seen == len(EXTENSIONS.faults)
+    assert "switched off" not in app.session.message
     app.close()
 """
 
