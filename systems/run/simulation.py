@@ -579,14 +579,15 @@ class Simulation:
         diverged = self.halted and self.reason is StopReason.DIVERGED
         return message if diverged else joined([message, self.warning])
 
-    def observe(self) -> None:
-        """Bring axial forces, lengths, reactions and energies up to date with the state."""
-        self.program.observe()
+    def observe(self) -> Dynamics:
+        """Bring axial forces, lengths, reactions and energies up to date with the state; returns what knows them."""
+        observer = self.programs.observer
+        observer.observe()
+        return observer
 
     def _measured(self) -> Column:
         """The measures of the present state."""
-        self.observe()
-        return self.program.measures
+        return self.observe().measures
 
     @property
     def energy(self) -> Energy:
