@@ -33,7 +33,7 @@ class Derivation:
 
     targets: tuple[str, ...]
     sources: tuple[str, ...]
-    compute: Callable[[World], None]
+    compute: Callable[[World], object]
 
 
 class Solution(Protocol):

@@ -175,7 +175,7 @@ class Preparation(System):
             and impacts <= LONGEST_IMPACT
             and all(map(is_our_own, simulation.plan))
         ):
-            jobs = [(PARTING.name,)] if parting > LONGEST_WORK else []
+            jobs: list[Job] = [(PARTING.name,)] if parting > LONGEST_WORK else []
         else:  # finding them takes the modes of a small model: 13 ms in each frame of a drag in pause
             jobs = self._jobs(simulation)
         left = [job for job in jobs if not self._is_ready(job)]
