@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pinjoint.commands.arguments import Parser, UsageError, count, finite
+from pinjoint.commands.arguments import Parser, UsageError, count, finite, option
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, model_of
 from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.components.field import ENDS
@@ -27,34 +27,26 @@ _UNITS = {"displacement": "m", "rotation": "rad", "axial_force": "kN", "bending_
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
-        prog="pinjoint curve",
-        description=tr(
-            "Load–displacement curve: equilibria while the load grows, and while it falls again past limit points."
-        ),
+        "curve",
+        "Load–displacement curve: equilibria while the load grows, and while it falls again past limit points.",
     )
     add_model(parser)
     goal = parser.add_mutually_exclusive_group()
-    goal.add_argument(
-        "--factor", type=finite, default=1.0, help=tr("end where the load factor first reaches this; default 1")
+    option(goal, "--factor", "end where the load factor first reaches this; default 1", finite, default=1.0)
+    option(
+        goal,
+        "--until B.y=-2.5",
+        "end where a particle first has this displacement (m), or rotation, as B.rotation=1 (rad)",
     )
-    goal.add_argument(
-        "--until",
-        metavar="B.y=-2.5",
-        help=tr("end where a particle first has this displacement (m), or rotation, as B.rotation=1 (rad)"),
-    )
-    parser.add_argument(
-        "--branch",
-        type=int,
+    option(
+        parser,
+        "--branch N",
+        "at the Nth bifurcation, take the branch that buckles along its mode, or against it if N is negative;"
+        " default: stay on the main branch",
+        int,
         default=0,
-        metavar="N",
-        help=tr(
-            "at the Nth bifurcation, take the branch that buckles along its mode, or against it if N is negative;"
-            " default: stay on the main branch"
-        ),
     )
-    parser.add_argument(
-        "--points", type=count, default=500, metavar="N", help=tr("compute at most N equilibria; default 500")
-    )
+    option(parser, "--points N", "compute at most N equilibria; default 500", count, default=500)
     add_theory(parser)
     add_output(parser, default="csv")
     options = parser.parse_args(words)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.commands.arguments import Parser, UsageError, flag, option
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, model_of
 from pinjoint.commands.output import Row, add_output, aligned, writable, write_result, writing
 from pinjoint.components.language import tr
@@ -26,43 +26,33 @@ MOST_SETS = 100  # unknowns; what each does to each, and to all rods, takes 100 
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
-    parser = Parser(
-        prog="pinjoint force-method",
-        description=tr("Statically indeterminate structures by the force method, as in textbooks."),
-    )
-    parser.add_argument("model", help=tr("a model file, or the name of a bundled model"))
+    parser = Parser("force-method", "Statically indeterminate structures by the force method, as in textbooks.")
+    option(parser, "model", "a model file, or the name of a bundled model")
     which = parser.add_mutually_exclusive_group(required=True)
-    which.add_argument(
-        "--release",
-        metavar="AC",
+    option(
+        which,
+        "--release AC",
+        "a bar, a reaction such as A.y or A.rotation, a moment such as AB.start; may be given several times",
         action="append",
-        help=tr(
-            "a bar, a reaction such as A.y or A.rotation, a moment such as AB.start; may be given several times"
-        ),
     )
-    which.add_argument(
-        "--all", action="store_true", help=tr("release unknowns until the structure is statically determinate")
-    )
-    parser.add_argument(
+    flag(which, "--all", "release unknowns until the structure is statically determinate")
+    option(
+        parser,
         "--convention",
+        "sign convention of the text; textbook: δ₁₀ + δ₁₁ X₁ = 0; thesis: p = (Δ − Δ₀) / Δ₁",
         choices=CONVENTIONS,
         default=CONVENTIONS[0],
-        help=tr("sign convention of the text; textbook: δ₁₀ + δ₁₁ X₁ = 0; thesis: p = (Δ − Δ₀) / Δ₁"),
     )
-    parser.add_argument(
+    flag(
+        parser,
         "--sets",
-        action="store_true",
-        help=tr(
+        tr(
             "write what each unknown alone does, too, where there are more than {count} unknowns",
             count=MOST_SETS,
         ),
     )
-    parser.add_argument(
-        "--report", type=writable, metavar="FILE.pdf", help=tr("write the whole solution to a PDF as well")
-    )
-    parser.add_argument(
-        "--set", action="append", default=[], metavar="PATH=VALUE", help=tr("change the model first")
-    )
+    option(parser, "--report FILE.pdf", "write the whole solution to a PDF as well", writable)
+    option(parser, "--set PATH=VALUE", "change the model first", action="append", default=[])
     add_output(parser, default="json")
     options = parser.parse_args(words)
     if options.report is not None and not options.report.lower().endswith(".pdf"):

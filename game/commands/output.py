@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from pinjoint.commands.arguments import UsageError
+from pinjoint.commands.arguments import UsageError, option
 from pinjoint.components import written
 from pinjoint.components.language import ENGLISH, Said, decimals, english, spoken, tr
 from pinjoint.components.mistake import Mistake
@@ -53,23 +53,19 @@ def writable(text: str) -> str:
 
 def add_format(parser: argparse.ArgumentParser, default: Format = "table") -> None:
     """Add the option --format alone, to commands whose --output is not a file."""
-    parser.add_argument(
+    option(
+        parser,
         "--format",
+        tr("the format of the output; default {format}", format=default),
         choices=FORMATS,
         default=default,
-        help=tr("the format of the output; default {format}", format=default),
     )
 
 
 def add_output(parser: argparse.ArgumentParser, default: Format = "table") -> None:
     """Add the options --format and --output of `write_result`."""
     add_format(parser, default)
-    parser.add_argument(
-        "--output",
-        type=writable,
-        metavar="FILE",
-        help=tr("write the output to this file instead of the terminal"),
-    )
+    option(parser, "--output FILE", "write the output to this file instead of the terminal", writable)
 
 
 # --- writing -------------------------------------------------------------------------------------------

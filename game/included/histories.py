@@ -17,7 +17,7 @@ from typing import TextIO
 import numpy as np
 
 from pinjoint.components import FieldError, HistoryKind, Load, Model, Vector
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import marked
 from pinjoint.components.load import History
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import quoted
@@ -145,20 +145,16 @@ def shake(model: Model, record: History | dict[str, list[float] | str], directio
 
 def run(words: list[str]) -> int:
     """`pinjoint shake MODEL RECORD.csv --output FILE`."""
-    from pinjoint.commands.arguments import Parser, UsageError
+    from pinjoint.commands.arguments import Parser, UsageError, option
     from pinjoint.commands.output import writable
     from pinjoint.documents import models
 
-    parser = Parser(
-        prog="pinjoint shake", description=tr("Shake the supports of a model by a recorded acceleration.")
-    )
-    parser.add_argument("model", help=tr("a model file, or the name of a bundled model"))
-    parser.add_argument("record", type=Path, metavar="RECORD.csv", help=tr("lines of time (s), acceleration"))
-    parser.add_argument("--unit", choices=("m/s2", "g"), default="m/s2", help=tr("of the accelerations"))
+    parser = Parser("shake", "Shake the supports of a model by a recorded acceleration.")
+    option(parser, "model", "a model file, or the name of a bundled model")
+    option(parser, "record RECORD.csv", "lines of time (s), acceleration", Path)
+    option(parser, "--unit", "of the accelerations", choices=("m/s2", "g"), default="m/s2")
     parser.add_argument("--direction", choices=tuple(DIRECTIONS), default="x")
-    parser.add_argument(
-        "--output", type=writable, required=True, metavar="FILE", help=tr("the model with the loads")
-    )
+    option(parser, "--output FILE", "the model with the loads", writable, required=True)
     options = parser.parse_args(words)
     model = models.load(options.model)
     try:
