@@ -43,5 +43,9 @@ class Extensions:
     mods: list[Any] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
 
+    def last_fault(self, seen: int) -> str:
+        """The mod that failed last and why; "" if no more failed than a person has seen."""
+        return self.faults[-1] if len(self.faults) > seen else ""
+
 
 EXTENSIONS = Extensions()  # of this process; several sessions with different mods are not asked for

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.load import Load
 from pinjoint.components.mistake import WrongValue
@@ -111,7 +112,12 @@ class Headless(Context):
         The fault of a mod, the question or refusal of the scene, why the run stopped, a warning or a notice, then the
         remarks on a run at rest.
         """
-        said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
+        said = (
+            EXTENSIONS.last_fault(self.faults_seen)
+            or self.scenes.active.message
+            or self.simulation.said
+            or self.notice
+        )
         return joined([said, *(remark.message for remark in self.document.assessment.remarks)])
 
     # --- time --------------------------------------------------------------------------------------
@@ -167,7 +173,7 @@ class Headless(Context):
                 yield simulation
                 document.chronicle.look()
         finally:
-            if not self.time_passes:
+            if not self.scenes.time_passes:
                 document.history.end_run()
 
     @contextmanager

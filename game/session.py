@@ -72,8 +72,7 @@ class Session(Headless):
         super().__init__(model, systems, view, file, all_scenes(), seen)
         self.recorder: Any = None  # pinjoint.scripts.playing.Recorder, told of every press and change of size
         self._clicked: tuple[object, ...] | None = None  # what took the last press, if that was a click
-        # Of the window (pixels).
-        self.extent = self.view.camera.viewport.width, self.view.camera.viewport.height
+        self.extent = self.view.camera.viewport.width, self.view.camera.viewport.height  # of the window
         self.documents.on_leave, self.documents.on_begin = self._leave_document, self._begin_document
         offer_tools(self)
         self._begin_document()
@@ -140,7 +139,7 @@ class Session(Headless):
     def _begin_document(self) -> None:
         """Show the document that is open now, with its sliders, from the first frame on."""
         model, view = self.model, self.view
-        self.show_state()
+        self.scenes.show_state(self)
         view.sliders = sliders_of(self)
         self._make_room()
         view.fit(model)
@@ -170,15 +169,11 @@ class Session(Headless):
 
         Raises ValueError if no key is called so.
         """
-        self.press_named(ACTIONS.key_named(key), pixel)
-
-    def press_named(self, key: str, pixel: Vector | None) -> None:
-        """Press a key or button by the name that bindings know it by, or type a text."""
+        key = ACTIONS.key_named(key)
         if key.startswith(TEXT):
             self.type(key.removeprefix(TEXT))
             return
         if key.startswith(FILES):
-            self.notice = ""
             self._record(key, pixel)
             self._open_files(key.removeprefix(FILES).splitlines())
             return
@@ -187,12 +182,12 @@ class Session(Headless):
         here = self.scene, self.view.menu is not None, self.view.help > 0, press.hit and press.hit.action
         if key == "double click" and self._clicked not in (None, here):
             return  # its first click led here, and the second is not meant for what is here
-        if key == "escape" and self.fault and self.scene not in FORMS:
+        if key == "escape" and EXTENSIONS.last_fault(self.faults_seen) and self.scene not in FORMS:
             self.faults_seen = len(EXTENSIONS.faults)
         elif press.action is not None:
             self.notice, self._clicked = "", here if key == "click" else None
             self._record(key, pixel)
-            if self.time_passes and self.has_program(self.simulation):
+            if self.scenes.time_passes and self.has_program(self.simulation):
                 self.document.get_ready()
             self.view.pressed = press.hit
             left = self._left_for_tools() if press.for_tools else ""

@@ -150,7 +150,7 @@ class Scene:
 
     def busy(self, context: Context) -> bool:
         """True while frames change something without a person's doing, as where time passes."""
-        return context.time_passes and not context.simulation.halted
+        return context.scenes.time_passes and not context.simulation.halted
 
     def focus(self, context: Context) -> tuple[Model, View]:
         """The model that a pointer picks from, and its view."""
@@ -191,13 +191,14 @@ class Scene:
 class Scenes:
     """The state machine: exactly one scene is active; a requested transition waits for `apply`.
 
-    hub: "pause" or "statics", whichever was active last; other scenes lead back there.
+    hub: "pause" or "statics", whichever was active last; others lead back there. time_passes: frames let time pass.
     """
 
     def __init__(self, scenes: Sequence[Scene]) -> None:
         self._by_name = {scene.name: scene for scene in scenes}
         self.active = scenes[0]
         self.hub = self.active.name
+        self.time_passes = False
         self._requested: list[str] = []
 
     def __getitem__(self, name: str) -> Scene:
@@ -226,6 +227,11 @@ class Scenes:
             here = self._by_name[name]
         self._requested.extend(names)
 
+    def show_state(self, context: Context) -> None:
+        """Let the model show its static solution in statics and beside the boxes that it leads to, else its state."""
+        solved = self.hub == STATICS and self.active.name in (STATICS, *FORMS)
+        context.model.show(context.document.statics if solved else None)
+
     def request_from_pause(self, name: str) -> None:
         """Ask for a scene that is entered from pause or statics, through pause where time passes."""
         way = dict.fromkeys((*(("pause",) if self.active.name == "simulation" else ()), name))
@@ -240,9 +246,10 @@ class Scenes:
             self.active.exit(context)
             self.active = self._by_name[name]
             self.hub = name if name in HUBS else self.hub
-            context.show_state()
+            self.show_state(context)
+            self.time_passes = context.schedule.is_active(_TIME, name)
             self.active.enter(context)
-            if context.time_passes:
+            if self.time_passes:
                 context.document.history.begin_run()
             else:
                 context.document.history.end_run()
@@ -328,16 +335,6 @@ class Context:
         """The impacts of the run so far, in columns."""
         return self.simulation.impacts
 
-    def show_state(self) -> None:
-        """Let the model show its static solution in statics and beside the boxes that it leads to, else its state."""
-        solved = self.scenes.hub == STATICS and self.scene in (STATICS, *FORMS)
-        self.model.show(self.document.statics if solved else None)
-
-    @property
-    def fault(self) -> str:
-        """The mod that failed last and why, until Escape is pressed; "" if none did."""
-        return EXTENSIONS.faults[-1] if len(EXTENSIONS.faults) > self.faults_seen else ""
-
     # --- time --------------------------------------------------------------------------------------
 
     def settle(self, factors: Sequence[float] | float = (1.0,), *, anew: bool = False) -> str:
@@ -354,11 +351,6 @@ class Context:
         """False while a large model waits for another process to compile its step program (see `awaited`)."""
         self.awaited = None if self.waits_for(simulation) is None else simulation
         return self.awaited is None
-
-    @property
-    def time_passes(self) -> bool:
-        """True while frames let time pass in the document that is open."""
-        return self.schedule.is_active(_TIME, self.scene)
 
     def restart(self) -> None:
         """Go back to before it was run or settled, keeping all edits. Can be undone."""
@@ -395,12 +387,12 @@ class Context:
 
     def _go_on(self) -> None:
         """Begin a new run in the log, if time passes in this scene."""
-        if self.time_passes:
+        if self.scenes.time_passes:
             self.document.history.begin_run()
 
     def _act_in_scene(self) -> None:
         """Steps that are no frame's are taken as in the active scene; where time stands still, as in simulation."""
-        self.simulation.act_in(self.scene if self.time_passes else "simulation")
+        self.simulation.act_in(self.scene if self.scenes.time_passes else "simulation")
 
     # --- editing -----------------------------------------------------------------------------------
 

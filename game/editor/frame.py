@@ -73,13 +73,13 @@ class Actions(System):
         """Let the view follow, perform the actions of the frame in their order, then let the scene change."""
         session = frame.session
         if follows(session):
-            session.press_named("home", None)  # recorded as the key that does so
+            session.press("home")  # recorded as the key that does so
         for key, pixel in frame.pressed if session.footer is None else ():
             if not key.startswith(TEXT):
                 self._keyed = session.scene
             elif self._keyed != session.scene:  # the key that led here; it is not meant for a box
                 continue
-            session.press_named(key, pixel)
+            session.press(key, pixel)
         session.scenes.apply(session)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import written
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, english, joined, listed, marked, plural, tr
 from pinjoint.components.model import Model
@@ -50,7 +51,7 @@ def offer_tools(context: Context) -> None:
 
 def exaggerate(context: Context) -> None:
     """Let the automatic displacement scale suit the model, but not in the middle of a drag."""
-    still = not context.time_passes or context.simulation.halted
+    still = not context.scenes.time_passes or context.simulation.halted
     if context.gesture is None and context.document.exaggeration.review(still=still) and still:
         context.view.follow(context.model)
 
@@ -285,8 +286,8 @@ def _state_word(context: Context, *, brief: bool) -> str:
 def _problem(context: Context) -> str:
     """Why the run stopped, or a warning though it goes on."""
     simulation = context.simulation
-    if context.fault:
-        return joined([context.fault, tr("Press Esc to close this message.")])
+    if fault := EXTENSIONS.last_fault(context.faults_seen):
+        return joined([fault, tr("Press Esc to close this message.")])
     if simulation.reason is StopReason.DIVERGED and simulation.halted:
         return simulation.message
     return simulation.warning

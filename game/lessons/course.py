@@ -8,6 +8,7 @@ from typing import Any
 
 from pinjoint.components.language import decimals, joined, tr
 from pinjoint.components.mistake import WrongValue
+from pinjoint.components.settings import STATICS
 from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import Card, Shape, View
 from pinjoint.documents.document import document
@@ -100,6 +101,8 @@ class Course:
                 self._open(load(task.model), task.model if isinstance(task.model, str) else "")
             except ModelError as error:
                 raise self.lesson.script.error(task.line, error) from None
+        else:
+            begin_in_its_mode(session)
         self.perform(task.setup)
         session.document.shapes.hide()
         session.notice = ""
@@ -124,6 +127,7 @@ class Course:
             session.scenes.request("pause")
             session.scenes.apply(session)
         own = not session.document.practice and session.model.particles.count > 0
+        session.view.rigid = False  # of an empty model, which is not to depend on what was drawn before
         session.documents.open(model, ModelFile(None, name), keep=own)
         self._opened = name
         session.document.practice = True
@@ -263,7 +267,8 @@ class Course:
     def look(self) -> None:
         """Accept a state as soon as it is reached and nobody is in the middle of something, or say anew what is wrong."""
         session, task = self._session, self.task
-        if session.gesture is not None or session.footer is not None or (session.busy and task.after):
+        apart = task.after or session.settings.opens_in == STATICS
+        if session.gesture is not None or session.footer is not None or (session.busy and apart):
             return
         seen = self._looks()
         if seen == self._seen or (self.accepted and not task.score):

@@ -14,6 +14,7 @@ from pinjoint.components import written
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, decimals, joined, listed, marked, tr
 from pinjoint.components.mistake import NotFound, WrongValue
+from pinjoint.components.settings import STATICS
 from pinjoint.documents.document import document
 from pinjoint.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Line, Task
 from pinjoint.paths import PathError, locate, quantity, readable
@@ -78,7 +79,8 @@ def judge(session: Session, task: Task, beginning: Document, answer: Answer = No
     """Whether a task is done in a session, in which it began with a model. Raises ValueError, LookupError."""
     truth = session
     if task.kind == UNTIL:
-        if task.after:
+        left = session.settings.opens_in == STATICS and session.model.solution is None
+        if task.after or left:
             truth = copy_of(session, document(session.model), task.after)
         failed = next((text for text in task.asked if not holds(truth, text)), None)
         wrong = "" if failed is None else _explained(task, truth) or _lacking(truth, failed)

@@ -173,11 +173,13 @@ def _scaled(position: Any, ratio: float) -> Vector:
 
 
 def _key_name(event: pygame.event.Event) -> str:
-    """The name of a key as in the table of bindings, modifiers first."""
+    """The name of a key as in the table of bindings, modifiers first; "" of a key that is never bound."""
     name = _NAMES.get(event.key) or pygame.key.name(event.key)
-    control = _control(event.mod)
-    shift = event.mod & pygame.KMOD_SHIFT and (control or len(name) > 1)
-    return ("ctrl+" if control else "") + ("shift+" if shift else "") + name if name else ""
+    held = ("ctrl+" if _control(event.mod) else "") + ("shift+" if event.mod & pygame.KMOD_SHIFT else "")
+    try:
+        return ACTIONS.key_named(held + name)
+    except ValueError:
+        return ""
 
 
 def _control(modifiers: int) -> bool:

@@ -268,7 +268,7 @@ def test_a_checker_that_fails_refuses_the_value(write_mod: Write) -> None:
     ):
         session.particles["C"].apple_area = 0
     assert session.particles["C"].apple_area == 0.25
-    assert "was switched off" in session.fault
+    assert "was switched off" in session.message
 
 
 KIND = """
@@ -307,5 +307,5 @@ def test_code_of_a_mod_that_no_guard_surrounds_is_named_all_the_same(write_mod: 
     session.frame(0.01)
     assert (
         "The mod 'apple' was switched off: code that the program called failed: RuntimeError: no luck"
-        in session.fault
+        in session.message
     )

@@ -24,7 +24,6 @@ from pinjoint.systems.render.symbols import RIM, dashed
 from pinjoint.systems.render.theme import Colour, faded
 
 _CLOSEST_LINES = 8.0  # points between grid lines
-_CLOSE = 8  # places of a name that touch its particle, at these corners and sides
 _CORNERS, _SIDES = np.array([(x, y) for y in (-1.0, 1.0) for x in (-1.0, 1.0)]), DIRECTIONS[[3, 2, 0, 1]]
 _CABLE = 0.5  # width of a cable, of that of another rod
 _DASH = 5.0  # points
@@ -301,7 +300,7 @@ def label_names(sheet: Sheet) -> None:
             else:
                 label = Label(name, at, size, sheet.theme.muted, 1e12, weight, lines="avoid", key=key)
             own = None if is_marked else (table, row)  # what is marked is not taken for another
-            close = _CLOSE if of_particle else 0
+            close = len(at) if of_particle else 0
             sheet.labels.append(label._replace(of=(table, row), own=own, close=close))
 
 

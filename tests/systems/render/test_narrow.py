@@ -32,7 +32,7 @@ def test_every_scene_is_drawn_at_every_size(keys: tuple[str, ...]) -> None:
     """A loop over texts too wide for their boxes never ended where a box had less room than nothing."""
     session, canvas = Session.open("hyperstatic"), Canvas()
     for key in keys:
-        session.press_named(key, None)
+        session.press(key)
     for (width, height), ratio in itertools.product(SIZES, RATIOS):
         with within(20.0, f"{session.scene} at {width}x{height}, ratio {ratio}"):
             session.resize(width, height, ratio)
@@ -40,7 +40,7 @@ def test_every_scene_is_drawn_at_every_size(keys: tuple[str, ...]) -> None:
             surface = pygame.Surface((width, height), depth=32)
             for shown, view in session.stages:
                 canvas.draw(surface, compose(shown, view, load_theme("light")))
-            session.press_named("click", (0.5 * width, 0.5 * height))
+            session.press("click", (0.5 * width, 0.5 * height))
 
 
 @pytest.mark.parametrize("room", [-100.0, -1e-9, 0.0, 5.0, 60.0, 1e9])
