@@ -159,9 +159,9 @@ class Session(Headless):
         wanted = (
             view.wanted - {TABLE} or view.free_bodies or any(readout.is_large for readout in readouts(self))
         )
-        table = self.lister.wanted if view.legend else 0.0
+        table = self.lister.wanted if view.legend else (0.0, 0.0)
         view.share(self.model, shares=view.legend and bool(wanted), table=table)
-        if table:
+        if table[0]:
             self.lister.follow()
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
