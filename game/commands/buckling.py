@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,9 +15,8 @@ from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.streams import tell
 from pinjoint.systems.catalogue import left_out_of_statics
-
-if TYPE_CHECKING:  # it imports scipy
-    from pinjoint.systems.statics.buckling import Buckling
+from pinjoint.systems.statics.buckling import Buckling
+from pinjoint.systems.statics.events import NoEquilibrium
 
 
 def command(words: Sequence[str]) -> int:
@@ -30,9 +29,6 @@ def command(words: Sequence[str]) -> int:
     add_output(parser)
     options = parser.parse_args(words)
     model = model_of(options)
-    from pinjoint.systems.statics.buckling import Buckling
-    from pinjoint.systems.statics.events import NoEquilibrium
-
     try:
         found = Buckling.of(model, options.modes)
     except NoEquilibrium as error:

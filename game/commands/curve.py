@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,10 +16,9 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.streams import tell
 from pinjoint.systems.catalogue import left_out_of_statics
-
-if TYPE_CHECKING:  # it imports scipy
-    from pinjoint.systems.statics.path import Curve
-
+from pinjoint.systems.statics.explain import describe_motion
+from pinjoint.systems.statics.path import Curve, Goal
+from pinjoint.systems.statics.theory import mechanisms
 
 _UNITS = {"displacement": "m", "rotation": "rad", "axial_force": "kN", "bending_moment": "kN·m"}
 
@@ -51,8 +50,6 @@ def command(words: Sequence[str]) -> int:
     add_output(parser, default="csv")
     options = parser.parse_args(words)
     model = model_of(options)
-    from pinjoint.systems.statics.path import Curve, Goal
-
     try:
         end = Goal.of(model, options.factor, options.until)
         wanted = {name: getattr(options, name) for name in ("points", "branch", "theory")}
@@ -110,9 +107,6 @@ def _why_it_ends(model: Model, curve: Curve, most: int) -> str:
 
 def _why_nothing_follows(model: Model) -> str:
     """Why a curve ends where it begins: the motion of a mechanism in words; "" if the structure is none."""
-    from pinjoint.systems.statics.explain import describe_motion
-    from pinjoint.systems.statics.theory import mechanisms
-
     moving = mechanisms(model)
     if not len(moving):
         return ""

@@ -102,13 +102,13 @@ def formatted(
     return "".join(f"{line}\n" for line in aligned([list(map(tr, titles)), *others]))
 
 
-def write(text: str, path: str | None) -> None:
-    """Write a text to a file, whole or not at all, or to standard output if None. Raises UsageError."""
+def write(content: str | bytes, path: str | None) -> None:
+    """Write to a file, whole or not at all, or to standard output if None. Raises UsageError."""
     with writing(path or tr("Standard output")):
         if path is None:
-            put(text)
+            put(str(content))
         else:
-            replace(path, text.encode())
+            replace(path, content if isinstance(content, bytes) else content.encode())
 
 
 @contextmanager

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 
 from pinjoint.commands.arguments import Parser, option
 from pinjoint.commands.options import ANSWERED, add_model, add_theory, model_of
-from pinjoint.commands.output import writable, writing
+from pinjoint.commands.output import writable, write
 from pinjoint.components.theory import FIRST_ORDER
-from pinjoint.documents.models import replace
 
 
 def command(words: Sequence[str]) -> int:
@@ -22,7 +21,5 @@ def command(words: Sequence[str]) -> int:
     options = parser.parse_args(words)
     from pinjoint.sheet import sheet  # it imports reportlab and scipy
 
-    made = sheet(model_of(options), options.theory)
-    with writing(options.output):
-        replace(options.output, made)
+    write(sheet(model_of(options), options.theory), options.output)
     return ANSWERED

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from pinjoint.commands import comparison, influence
 from pinjoint.commands.arguments import Parser, UsageError, flag, option, positive
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, headless_of
 from pinjoint.commands.output import add_output, write_result
+from pinjoint.systems.statics.events import NoEquilibrium
 
 
 def command(words: Sequence[str]) -> int:
@@ -33,18 +35,12 @@ def command(words: Sequence[str]) -> int:
     add_output(parser)
     options = parser.parse_args(words)
     session = headless_of(options)
-    from pinjoint.commands import comparison, influence
-    from pinjoint.systems.statics.events import NoEquilibrium
-    from pinjoint.systems.statics.unknowns import ForceMethodError
-
     try:
         if options.influence:
             lines = influence.influence(session.model, options.influence)
             write_result(options, lines, influence.rows, influence.lines)
             return ANSWERED
         found = comparison.compare(session, options.model, options.limit, simulate=not options.theory_only)
-    except ForceMethodError as error:
-        raise UsageError(str(error)) from None
     except NoEquilibrium as error:
         raise UsageError(str(error), NOT_ANSWERED) from None
     write_result(options, found, comparison.rows, comparison.lines)
