@@ -126,7 +126,7 @@ def draw_diagrams(sheet: Sheet, taken: float = 0.0) -> None:
     rows, start, end = sheet.rods[shown], sheet.start[shown], sheet.end[shown]
     quantity = sheet.view.quantity if sheet.is_frame else AXIAL
     force = np.nan_to_num(sheet.model.rods.axial_force)
-    if typical_length(start, end) < _SHORTEST * sheet.unit:
+    if typical_length(start, end) < _SHORTEST * sheet.unit and not (sheet.is_frame and len(rows) <= _MANY):
         if quantity == AXIAL:
             sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST], rows[force[rows] < -SMALLEST]
         sheet.advise(tr("zoom in to see force diagrams"))
@@ -234,7 +234,7 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) 
     scale = min(scale, _FAR / largest)
     base, polynomials, side = _baseline(sheet, rows), every[rows], side[rows]
     most = np.clip(_PIECES // len(rows), 4, 24)  # more where rods are few and long
-    shares = np.linspace(0.0, 1.0, int(np.clip(sheet.rod_length / (_PIECE * sheet.unit), 2, most)) + 1)
+    shares = np.linspace(0.0, 1.0, int(np.clip(sheet.rod_length / (_PIECE * sheet.unit), 8, most)) + 1)
     points, normals = _stations(base, shares, side)
     heights = scale * values(polynomials, shares)
     found = _Diagram(quantity, rows, base, polynomials, scale, largest, side, points, normals, heights)
