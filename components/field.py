@@ -20,8 +20,7 @@ T = TypeVar("T")
 Vector = tuple[float, float]
 Column = NDArray[Any]
 
-LENGTHS = {"m": 1.0, "cm": 100.0, "mm": 1000.0}  # units that a person may type, and how many make a metre
-CM = ("cm", LENGTHS["cm"])  # as all lengths are shown on screen, displacements among them
+CM = ("cm", 100.0)  # as all lengths are shown on screen, displacements among them
 LARGEST, SMALLEST = 1e30, 1e-30  # sizes of numbers to compute with, in inside units; SMALLEST of those above 0
 _FEW = 8  # rows up to which checking values one by one is faster than as an array
 _LARGEST_REFERENCE = 2**32 - 1

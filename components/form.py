@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import unicodedata
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -13,18 +12,11 @@ from pinjoint.components.language import decimals, tr, tr_in
 
 NUMBER, WORD, TEXT, FILE_NAME = "number", "word", "text", "file name"
 NAME = "name"  # one of some words, or a text of a form that is known
-_WITH_UNIT = re.compile(r"(.*[\d.]) ?([^\d\s.eE].*)")
 
 
 def fits_file_names(character: str) -> bool:
     """True for letters, digits, marks that combine with them (accents, vowels of Indian scripts), and a few more."""
     return character.isalnum() or character in " -._" or unicodedata.category(character).startswith("M")
-
-
-def number_and_unit(text: str) -> tuple[str, str]:
-    """What was typed into a box for a length, such as "1.5 m", as its number and its unit, which may be ""."""
-    found = _WITH_UNIT.fullmatch(text)
-    return (found[1], found[2].rstrip()) if found else (text, "")
 
 
 @dataclass(eq=False)

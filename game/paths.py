@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Collection, Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from decimal import DecimalException
 from typing import Any
 
 import msgspec
@@ -21,6 +22,7 @@ from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.table import Table
+from pinjoint.components.units import inside
 from pinjoint.components.wording import cut, missing, remedy
 
 EVERY = "*"  # in place of a name: all elements of the table
@@ -204,8 +206,8 @@ def apply_override(model: Model, override: str) -> None:
     """Give a fact of one element, or of all elements of a table ("*"), the value that a person typed.
 
     override: `<table>.<name or *>.<key>=<value>`, `settings.<key>=<value>` or `environment.<key>=<value>`,
-        with keys and units of model files; `<key>.x` and `<key>.y` are single components, `null` and
-        `none` mean no value of its own. Names may contain dots, spaces and "=".
+        with keys and units of model files, or units that are named, as `-300 N`; `<key>.x` and `<key>.y` are single
+        components, `null` and `none` mean no value of its own. Names may contain dots, spaces and "=".
 
     One undoable command. Raises PathError, which quotes the override.
     """
@@ -244,6 +246,10 @@ def _scalar(field: Field[Any], text: str) -> Any:
     try:
         return msgspec.json.decode(text) if field.dtype is object else field.dtype(text)
     except (ValueError, RecursionError):
+        pass
+    try:
+        return float(inside(text, field.unit)) if field.dtype is float else text
+    except DecimalException:
         return text
 
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from decimal import Decimal, DecimalException
+from decimal import DecimalException
 from typing import Any
 
-from pinjoint.components.field import LENGTHS, Field, FieldError
-from pinjoint.components.form import Box, Form, number_and_unit
+from pinjoint.components.field import Field, FieldError
+from pinjoint.components.form import Box, Form
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.load import HISTORIES
 from pinjoint.components.model import Model
+from pinjoint.components.units import inside
 from pinjoint.systems.forms.properties import KIND
 from pinjoint.systems.forms.typing import YES_NO
 
@@ -125,14 +126,5 @@ def _value(field: Field[Any], part: str, text: str) -> Any:
         return None
     if field.dtype is str or part == KIND:
         return text
-    digits, unit = number_and_unit(text)
-    number = Decimal(digits) / Decimal(repr(_per_inside_unit(field, unit or field.shown[0])))
+    number = inside(text, field.unit, field.shown[0])
     return int(number) if field.dtype is int and number == number.to_integral_value() else float(number)
-
-
-def _per_inside_unit(field: Field[Any], unit: str) -> float:
-    """How many of a unit make one of those inside the program. Raises FieldError if it is of another kind."""
-    units = LENGTHS if field.unit == "m" else dict([field.shown])
-    if unit not in units:
-        raise FieldError("must be in one of {units}, not in {unit}", units=", ".join(units), unit=unit)
-    return units[unit]

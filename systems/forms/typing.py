@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from pinjoint.components.field import LENGTHS
 from pinjoint.components.form import FILE_NAME, NAME, NUMBER, TEXT, Box, Form, fits_file_names
 from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.units import begins
 from pinjoint.components.wording import cut
 
 YES_NO = (marked("no"), marked("yes"))
@@ -16,8 +16,8 @@ MOST_CHARACTERS = 200  # in one box
 _MEANS = {"0": "no", "1": "yes"}
 _DIGITS = r"-?(\d+\.?\d*|\.\d*)?"  # a number, or the beginning of one
 _NUMBER_SO_FAR = re.compile(rf"{_DIGITS}|-?(\d+\.?\d*|\.\d+)[eE][+-]?\d*")
-# A length with another unit than that of its box.
-_WITH_UNIT_SO_FAR = re.compile(r"-?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?( ([^\d\s.,eE][^\s,]*)?|c|cm|mm?)")
+# A number with a unit of its own, known if nothing parts the two, or the beginning of one.
+_WITH_UNIT_SO_FAR = re.compile(r"-?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?( ?)([^\d\s.,eE][^,]*|)")
 # Other keyboards, numbers copied from the screen, the notation of the thesis.
 _IN_NUMBERS = {",": ".", "−": "-", "/": "-"}
 
@@ -166,7 +166,7 @@ def _entered(box: Box, character: str) -> tuple[str, int] | None:
     before, after = ("", "") if whole else (held[: box.caret], held[box.caret :])
     after = "" if box.accepts == NAME and box.text in words else after
     if box.accepts == NUMBER:
-        if box.unit in LENGTHS and _WITH_UNIT_SO_FAR.fullmatch(before + character + after):
+        if box.unit and _has_unit(before + character + after):
             return before + character + after, len(before) + 1
         before, character = before.removesuffix(" "), _IN_NUMBERS.get(character, character)
         if _NUMBER_SO_FAR.fullmatch(before + character + after):
@@ -181,6 +181,11 @@ def _entered(box: Box, character: str) -> tuple[str, int] | None:
     if completed is None and box.accepts == NAME and character.isprintable():
         return before + character + after, len(before) + 1
     return completed
+
+
+def _has_unit(text: str) -> bool:
+    found = _WITH_UNIT_SO_FAR.fullmatch(text)
+    return found is not None and text.isprintable() and (found[3] != "" or begins(found[4]))
 
 
 def _completed(box: Box, words: Sequence[str], character: str) -> tuple[str, int] | None:

@@ -22,6 +22,15 @@ def test_vectors(frame: Model) -> None:
     assert frame.particles["B"].force == (1.0, 2.0)
 
 
+def test_units_may_be_named(frame: Model) -> None:
+    apply_override(frame, "particles.B.force=300 N,-2.5 MN")
+    apply_override(frame, "rods.*.rest_length=150 cm")
+    assert frame.particles["B"].force == (0.3, -2500.0)
+    assert frame.rods["AB"].prescribed_rest_length == 1.5
+    with pytest.raises(PathError, match=r"^particles.B.force.x=2 t: must be in N, kN, MN, not in t"):
+        apply_override(frame, "particles.B.force.x=2 t")
+
+
 def test_single_components(frame: Model) -> None:
     apply_override(frame, "particles.B.force.y=-1")
     assert frame.particles["B"].force == (120.0, -1.0)

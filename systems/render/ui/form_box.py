@@ -7,8 +7,9 @@ from functools import partial
 import numpy as np
 
 from pinjoint.components.camera import Rectangle
-from pinjoint.components.form import NAME, NUMBER, WORD, Box, number_and_unit
+from pinjoint.components.form import NAME, NUMBER, WORD, Box
 from pinjoint.components.language import tr, tr_in
+from pinjoint.components.units import number_and_unit
 from pinjoint.systems.render.marks import Fills, Mark, Panel
 from pinjoint.systems.render.marks import Text as Written
 from pinjoint.systems.render.theme import Theme, faded

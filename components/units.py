@@ -1,0 +1,114 @@
+"""Units that people type, such as "N/mm²", "kNm", "cm4" or "°", in those that the program has inside.
+
+>>> inside("2 N/mm²", "kN/m²")
+Decimal('2000')
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from decimal import Decimal
+
+from pinjoint.components.field import FieldError
+
+_Dimension = tuple[int, ...]  # powers of m, kg, s, K; angles have none
+
+_BASES = {  # that prefixes may stand before
+    "m": ("1", (1, 0, 0, 0)),
+    "g": ("1e-3", (0, 1, 0, 0)),
+    "s": ("1", (0, 0, 1, 0)),
+    "N": ("1", (1, 1, -2, 0)),
+    "Pa": ("1", (-1, 1, -2, 0)),
+    "J": ("1", (2, 1, -2, 0)),
+    "rad": ("1", (0, 0, 0, 0)),
+    "t": ("1e3", (0, 1, 0, 0)),
+    "K": ("1", (0, 0, 0, 1)),
+}
+_PREFIXES = {"": "1", "µ": "1e-6", "m": "1e-3", "c": "1e-2", "da": "1e1", "k": "1e3", "M": "1e6", "G": "1e9"}
+_OTHERS = {
+    "min": ("60", (0, 0, 1, 0)),
+    "h": ("3600", (0, 0, 1, 0)),
+    "Hz": ("1", (0, 0, -1, 0)),
+    **{sign: (repr(math.pi / 180.0), (0, 0, 0, 0)) for sign in ("°", "º", "deg")},
+    "°C": ("1", (0, 0, 0, 1)),
+    "%": ("0.01", (0, 0, 0, 0)),
+    "‰": ("0.001", (0, 0, 0, 0)),
+    "1": ("1", (0, 0, 0, 0)),  # as in 1/K and 10⁻⁶/K
+    "10": ("10", (0, 0, 0, 0)),
+}
+_SYMBOLS: dict[str, tuple[Decimal, _Dimension]] = {
+    prefix + name: (Decimal(size) * Decimal(factor), dimension)
+    for name, (factor, dimension) in _BASES.items()
+    for prefix, size in _PREFIXES.items()
+} | {name: (Decimal(factor), dimension) for name, (factor, dimension) in _OTHERS.items()}
+_NAMES = "|".join(map(re.escape, sorted(_SYMBOLS, key=len, reverse=True)))  # kNm is of kN and m, not of k…
+_MARKS = "·*./ "
+_PART = re.compile(rf"([{_MARKS}]?)({_NAMES})(?:\^?(-?\d)|(⁻?[²³⁴⁶]))?")
+_RAISED = str.maketrans("²³⁴⁶⁻", "2346-")
+_WITH_UNIT = re.compile(r"(.*?[\d.]) ?([^\d\s.eE].*)")
+# Of these, an error names those that fit.
+_USUAL = (
+    *(
+        "m",
+        "cm",
+        "mm",
+        "N",
+        "kN",
+        "MN",
+        "N·m",
+        "kN·m",
+        "N/m",
+        "kN/m",
+        "N/mm",
+        "kg",
+        "t",
+        "kg/m",
+        "s",
+        "rad",
+        "°",
+    ),
+    *("MPa", "GPa", "m²", "cm²", "mm²", "m³", "cm³", "m⁴", "cm⁴", "m/s", "km/h", "K", "%"),
+)
+
+
+def number_and_unit(text: str) -> tuple[str, str]:
+    """What was typed, such as "1.5 m", as its number and its unit, which may be ""."""
+    found = _WITH_UNIT.fullmatch(text)
+    return (found[1], found[2].rstrip()) if found else (text, "")
+
+
+def inside(text: str, unit: str, otherwise: str = "") -> Decimal:
+    """The number that a text means, in a unit of the program.
+
+    otherwise: the unit of a number that has none; "": that of the program. Raises DecimalException if it is no number, and
+    FieldError if its unit is of another kind.
+    """
+    digits, typed = number_and_unit(text)
+    typed = typed or otherwise or unit
+    if typed == unit:
+        return Decimal(digits)
+    (here, powers, rest), (there, wanted, _) = _read(typed), _read(unit)
+    if rest or powers != wanted:
+        usual = [name for name in _USUAL if _read(name)[1] == wanted] or [otherwise or unit]
+        raise FieldError("must be in {units}, not in {unit}", units=", ".join(usual), unit=typed)
+    return Decimal(digits) * (here / there)
+
+
+def begins(text: str) -> bool:
+    """True for the beginnings of units: "k", "kN", "kN/", "kN·m"."""
+    rest = _read(text)[2].lstrip(_MARKS)
+    return text[:1] not in _MARKS and any(name.startswith(rest) for name in _SYMBOLS)
+
+
+def _read(unit: str) -> tuple[Decimal, _Dimension, str]:
+    """How many of m, kg, s and K to their powers a unit is, these powers, and what is left of its text."""
+    factor, powers, rest = Decimal(1), (0, 0, 0, 0), unit
+    while part := _PART.match(rest):
+        mark, name, typed, raised = part.groups()
+        power = int(typed or (raised or "1").translate(_RAISED)) * (-1 if mark == "/" else 1)
+        size, own = _SYMBOLS[name]
+        factor *= size**power
+        powers = tuple(one + power * other for one, other in zip(powers, own, strict=True))
+        rest = rest[part.end() :]
+    return factor, powers, rest
