@@ -18,7 +18,7 @@ from pinjoint.components.field import FieldError
 from pinjoint.components.load import Load
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, nodes
+from pinjoint.components.rod import Rod, bends, idle_moment, nodes
 from pinjoint.systems.edit import Refusal
 from tests.reference import frame_theory, frames
 from tests.reference.sessions import solved_afresh
@@ -27,7 +27,7 @@ BASES = (
     *("portal", "gerber_beam", "two_storey_frame", "vierendeel", "three_hinged_arch", "braced_portal"),
     *("three_bar_plastic", "hyperstatic", "isostatic"),
 )
-MENDING = 0.25  # of the edits after one that leaves a mechanism; the others go on from there
+MENDING = 0.4  # of the edits after one that leaves a mechanism; the others go on from there
 MENDS = "undo", "undo", "support", "clamp", "rod"
 STEPS = ([1.0], [1.0], [1.0, 0.5], [0.5, 1.0], [1.0, 0.0])
 WITHIN, ROUNDING = 1e-10, 1e-13  # of the largest number; over the lowest eigenvalue, more
@@ -251,6 +251,9 @@ def _agrees(model: Model, factor: float, within: float) -> None:
             got = getattr(table, name)[list(rows)]
             if name.startswith("reaction"):
                 held = model.particles.fixed if name == "reaction" else model.particles.fixed_rotation
+                if name == "reaction_moment" and not bends(model):  # trusses leave moments out, and say so
+                    assert idle_moment(model) or not wanted.any(), name
+                    continue
                 wanted, got = np.where(held[used], wanted, 0.0), np.where(held[used], got, 0.0)
             size = max(np.abs(wanted).max(initial=0.0), 1e-3 if name == "displacement" else 1.0)
             assert np.abs(got - wanted).max(initial=0.0) <= within * size, name
