@@ -23,20 +23,28 @@ _OTHERS = (
 )
 
 
-def incomputable(model: Model, since: int = -1) -> str:
+def incomputable(model: Model) -> str:
     """The sentence that names a number too large or too small to compute with; "" if there is none.
 
-    since: a revision of the model at which there was none.
+    Only what changed since there was none is looked at.
     """
+    problem = _out_of_range(model) or _too_far(model)
+    model.sound = model.sound if problem else model.revision
+    return problem
+
+
+def _out_of_range(model: Model) -> str:
     for name in _TABLES:
         table = model.tables[name]
         for field in table.fields.values():
             if field.dtype is float and (field.role is Role.DOCUMENT or field.name in _OTHERS):
-                column = table.column(field.name)
-                if table.version(field.name) > since and (extreme := _extreme(field, column)).any():
+                column = table.current(field.name)[
+                    : table.count
+                ]  # of the state; up to date, and so its version
+                if table.version(field.name) > model.sound and (extreme := _extreme(field, column)).any():
                     row, *axis = np.argwhere(extreme)[0].tolist()
                     return _sentence(model.describe(table[row]), field, float(column[(row, *axis)]))
-    return _too_far(model)
+    return ""
 
 
 def _too_far(model: Model) -> str:

@@ -32,7 +32,7 @@ COVERED = 0.75  # of this margin, what arrows and the legend may take
 COLUMN = 310.0  # points: the width of panels, boxes to type into, or a lesson, beside a model
 LEAST_MODEL = 230.0  # points that the model keeps beside boxes, or they take all
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
-TABLE_SHARE = 0.36  # of a window's height, that a table of results takes below a model
+TABLE_SHARE = 0.36  # of a window's height, that a table of results takes below a model at most
 LEAST_FOR_LESSON = 860.0  # points of a window's width from which on a lesson is a column, else a strip below
 STRIP, STRIP_SHARE = 230.0, 0.4  # points, and share of the height at most, of this strip
 
@@ -272,7 +272,7 @@ class View:
     wanted: which of our own a person switched on among them: theory beside the run, its energy, its events.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
-    panel appeared. table: the points across that a table of results wants beside the model; 0: there is none.
+    panel appeared. table: the points across and high that a table of results wants beside the model; 0, 0: there is none.
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     provisional: why what is shown is no equilibrium, which makes results pale; "": it is one.
     card: a task of a lesson, in place of a model. cuts: rods that are drawn cut. has_units: values of forces tell theirs.
@@ -318,7 +318,7 @@ class View:
     pin: Pin | None = None
     fitted: bool = False
     shares: bool = False
-    table: float = 0.0
+    table: Vector = (0.0, 0.0)
     aside: Viewport | None = None
     provisional: str = ""
     card: Card | None = None
@@ -365,8 +365,15 @@ class View:
         across = (x >= room.left) & (x <= room.right)
         return bool((across & (y >= room.top + margin) & (y <= room.bottom - margin)).all())
 
+    @property
+    def _has_sliders(self) -> bool:
+        """False where a table below leaves the model too little beside sliders."""
+        return not self.table[0] or self.canvas.height >= (LEAST_ABOVE + self.sliders.above) * self.pixel_ratio
+
     def _reserve(self, *, arrows: bool) -> int:
         """Pixels of the height of the canvas that are left to the sliders; arrows: with those that reach down to them."""
+        if not self._has_sliders:
+            return round(SUPPORT * self.pixel_ratio)
         return self.sliders.reserve(self.canvas, self.pixel_ratio, MARGIN, arrows=arrows)
 
     def _meets_sliders(self, model: Model) -> bool:
@@ -378,12 +385,13 @@ class View:
         right, top = places[0].right, places[-1].top
         return bool(x.min() - ARROW * self.pixel_ratio < right and y.max() + reach > top)
 
-    def share(self, model: Model, *, shares: bool, table: float = 0.0) -> None:
+    def share(self, model: Model, *, shares: bool, table: Vector = (0.0, 0.0)) -> None:
         """Leave room for panels and a table, or not, and fit the model into what is left, unless somebody looks closer."""
-        if (shares, table) != (self.shares, self.table):
-            self.shares, self.table = shares, table
-            if self.fitted:
-                self.fit(model)
+        before, self.shares, self.table = (self.shares, self.table), shares, table
+        if self.fitted and (shares, table[0]) != (before[0], before[1][0]):
+            self.fit(model)
+        elif table != before[1]:  # other rows
+            self.follow(model, clear=True)
 
     @property
     def strip(self) -> Viewport:
@@ -401,10 +409,11 @@ class View:
     @property
     def table_place(self) -> Viewport:
         """Where a table of results stands: at the right where the model keeps enough, else below; of no size without one."""
-        window, taken, wide = self.camera.viewport, self.strip.width, round(self.table * self.pixel_ratio)
+        window, taken = self.camera.viewport, self.strip.width
+        wide, high = (round(points * self.pixel_ratio) for points in self.table)
         if wide == 0 or window.width >= taken + wide + LEAST_BESIDE * self.pixel_ratio:
             return Viewport(window.left + window.width - wide, window.top, wide, window.height)
-        high = round(TABLE_SHARE * window.height)
+        high = min(high, round(TABLE_SHARE * window.height))
         return Viewport(window.left + taken, window.top + window.height - high, window.width - taken, high)
 
     @property
@@ -412,7 +421,7 @@ class View:
         """The part of the viewport that is left for the model."""
         window, taken = self.camera.viewport, self.strip.width
         left, right, bottom = window.left + taken, window.left + window.width, window.top + window.height
-        if self.table:
+        if self.table[0]:
             table = self.table_place
             right, bottom = (table.left, bottom) if table.top == window.top else (right, table.top)
         if self.aside is not None and self.aside.left > left:
@@ -440,9 +449,8 @@ class View:
         """Where the sliders are: at the lower left of the canvas, above panels that take its lower half."""
         c, panels = self.canvas, self.panels
         beside = not self.shares or panels.width < c.width or panels == c
-        return self.sliders.places(
-            c if beside else replace(c, height=c.height - panels.height), self.pixel_ratio
-        )
+        sliders = self.sliders if self._has_sliders else SliderStack()
+        return sliders.places(c if beside else replace(c, height=c.height - panels.height), self.pixel_ratio)
 
     def slider_at(self, pixel: Vector) -> Place | None:
         """The slider under a pixel."""
@@ -479,9 +487,13 @@ def drawn_positions(model: Model) -> NDArray[np.float64]:
 
 def drawn_places(model: Model) -> NDArray[np.float64]:
     """All that a picture of a model is to show (m), (n, 2): positions as drawn and deflected, bent rods, and points of other
-    elements.
+    elements; what only a thin line shows deflected up to a structure's length away.
     """
-    particles, scales = model.particles, {drawn_scale(model), float(model.settings.displacement_scale)}
-    places = (particles.position + particles.displacement * scale for scale in scales)
+    position, scale = model.particles.position, float(model.settings.displacement_scale)
+    deflected = np.concatenate([position + model.particles.displacement * scale, middles(model)])
+    if len(position) and scale != drawn_scale(model):
+        low, high = position.min(axis=0), position.max(axis=0)
+        far = (high - low).max()
+        deflected = np.clip(deflected, low - far, high + far)
     others = (points.reshape(-1, 2) for _, points in outlines(model))
-    return np.concatenate([*places, middles(model), *others])
+    return np.concatenate([drawn_positions(model), deflected, *others])

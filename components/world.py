@@ -33,7 +33,7 @@ class Derivation:
 
     targets: tuple[str, ...]
     sources: tuple[str, ...]
-    compute: Callable[[World], None]
+    compute: Callable[[World], object]
 
 
 class Solution(Protocol):
@@ -83,6 +83,7 @@ class World:
         self.solution: Solution | None = None
         self._shown_since = 0  # revision at which the solution took the place of the state, or gave it back
         self.bent: tuple[int, Any] = -1, ()  # how rods are bent, found at this revision (bent.py)
+        self.sound = -1  # the revision up to which all numbers can be computed with (numeric_range.py)
         self._naming: Callable[[int, str], str] | None = None
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}

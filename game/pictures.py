@@ -62,7 +62,7 @@ def on_paper(view: View, camera: Camera | None = None) -> View:
         status=Status(time=None, speed=view.status.speed),
         readouts=(),
         shares=False,
-        table=0.0,
+        table=(0.0, 0.0),
         aside=None,
         preview=None,
         pointer=None,

@@ -462,7 +462,7 @@ class Context:
         """All that is drawn: models and forms of the active scene, each in its view, toolbar and footer."""
         stages = list(self.scenes.active.stages(self))
         if not self.scenes.active.covers(self):
-            stages += [(self.lister.listing, self.view)] if self.view.table else []
+            stages += [(self.lister.listing, self.view)] if self.view.table[0] else []
             stages.append((self.view.toolbar, self.view))
         card = self.course.view if self.course is not None else None
         return stages + [(self._blank, view) for view in (self.footer, card) if view is not None]

@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 
 from pinjoint.components import written
 from pinjoint.components.bent import is_frame
+from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import language, tr
 from pinjoint.components.model import Model
 from pinjoint.components.view import Listing
 from pinjoint.results import Results
 from pinjoint.systems.input.actions import LIVE, PROPERTIES, TABLE
-from pinjoint.systems.render.ui.listing import rows_in
+from pinjoint.systems.render.ui.listing import height_of, rows_in
 from pinjoint.tables import Table
 
 _WIDE, _NARROW = 860.0, 400.0  # points across tables of rods that bend or bear loads, and of others
@@ -39,12 +40,14 @@ class Lister:
         self._made: tuple[object, Listing] | None = None
 
     @property
-    def wanted(self) -> float:
-        """Points across that the table wants beside the model; 0: it is not open, or not in this scene."""
+    def wanted(self) -> Vector:
+        """Points across and high that the tables want beside the model; 0, 0: none is open, or not in this scene."""
         context, rods = self._context, self._context.model.rods
         if TABLE not in context.view.wanted or context.scene not in (*LIVE, PROPERTIES):
-            return 0.0
-        return _WIDE if is_frame(context.model) or rods.distributed_force.any() else _NARROW
+            return 0.0, 0.0
+        wide = is_frame(context.model) or rods.distributed_force.any()
+        most = max(rods.count, context.model.particles.count)
+        return (_WIDE if wide else _NARROW), height_of(most + 1)
 
     @property
     def tables(self) -> dict[str, Table]:

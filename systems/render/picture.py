@@ -173,17 +173,17 @@ def _composed(sheet: Sheet) -> Picture:
     scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
     put_controls(paper, model, sheet.view, theme)
     preview = draw_preview(sheet)
-    listed = sheet.placed.get(LIST, -1)
+    former = dict(sheet.placed)
     labels, referred = place_labels(
         sheet.labels, sheet.occupancy, sheet.unit, sheet.placed, steady=sheet.view.steady
     )
     over = [
-        *draw_references(sheet, referred, listed),
+        *draw_references(sheet, referred, former.get(LIST, -1)),
         *draw_scale(sheet, scale),
         *draw_flashes(sheet),
         *preview,
         *overlays,
-        *draw_pointed(sheet),
+        *draw_pointed(sheet, former),
     ]
     sheet.placed |= sheet.scales
     marks = [*sheet.marks, *labels, *over]

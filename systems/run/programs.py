@@ -45,6 +45,8 @@ class Programs:
         self._plan: list[StepSystem] | None = None
         self._integrator: Integrator | None = None
         self._bound: Dynamics | None = None
+        self._before: Integrator | None = None  # chosen before the document changed
+        self._observer: Dynamics | None = None
 
     @property
     def plan(self) -> list[StepSystem]:
@@ -93,9 +95,13 @@ class Programs:
     def integrator(self) -> Integrator:
         """Exact flight if every system of the plan leaves it exact, else the integrator."""
         if self._integrator is None:
-            exact = all(system.leaves_flight_exact(self._model) for system in self.plan)
-            self._integrator = FREE_FLIGHT if exact and self.collides else self._chosen
+            self._integrator = FREE_FLIGHT if self._is_exact else self._chosen
         return self._integrator
+
+    @property
+    def _is_exact(self) -> bool:
+        """True if particles fly exactly."""
+        return self.collides and all(system.leaves_flight_exact(self._model) for system in self.plan)
 
     @property
     def _chosen(self) -> Integrator:
@@ -140,6 +146,18 @@ class Programs:
     def dynamics(self) -> Dynamics:
         """The program or flight that moves the model, bound to it as it is now."""
         return self._bound or self.bind()
+
+    @property
+    def observer(self) -> Dynamics:
+        """What is bound; until time is to pass, a program of another integrator will do, since all observe alike.
+
+        To choose one takes all modes of a small model: half of each frame in which a hand drags in pause.
+        """
+        if self._bound is None and self._observer is None and self._before is not None and not self._is_exact:
+            self._observer = self._made.get(kind_of(self._model, self._before, self.plan))
+            if self._observer is not None:
+                self._observer.bind()
+        return self._bound or self._observer or self.bind()
 
     @property
     def compiled(self) -> Program:
@@ -202,11 +220,12 @@ class Programs:
 
     def unbind(self) -> None:
         """Release what is bound, since the plan may have changed."""
-        self._plan = self._bound = None
+        self._plan = self._bound = self._observer = None
 
     def void(self) -> None:
         """Release what is bound and the chosen integrator, since the document changed."""
-        self._plan = self._integrator = self._bound = None
+        self._before = self._integrator or self._before
+        self._plan = self._integrator = self._bound = self._observer = None
 
     def _bound_to(self, plan: list[StepSystem]) -> Dynamics:
         key = self._key(plan)

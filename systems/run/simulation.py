@@ -105,7 +105,7 @@ class Simulation:
         self._parting: tuple[int, Generator[None, None, str]] | None = None
         self._present: tuple[int, Snapshot] | None = None  # the state at this revision
         self.armed = False
-        self.armed_revision = self._sound_at = -1
+        self.armed_revision = -1
         model.before_change = self.before_change
         observed = tuple(f"{table}.{name}" for table, names in OBSERVED.items() for name in names)
         model.derive(Derivation(observed, self._sources(), lambda world: self.observe()))
@@ -176,9 +176,8 @@ class Simulation:
     def _arm(self) -> None:
         """Get ready to run after edits: account for them, choose the step size, keep a safe state."""
         if not self.armed:
-            problem = incomputable(self.model, self._sound_at)
+            problem = incomputable(self.model)
             if not problem:
-                self._sound_at = self.model.revision
                 parted = self._parted() if self.programs.collides else ""
                 self.program.commit()  # rods that edits left beyond a strength yield
                 self.note = joined([self.programs.note, parted, idle_moment(self.model)])
@@ -579,14 +578,15 @@ class Simulation:
         diverged = self.halted and self.reason is StopReason.DIVERGED
         return message if diverged else joined([message, self.warning])
 
-    def observe(self) -> None:
-        """Bring axial forces, lengths, reactions and energies up to date with the state."""
-        self.program.observe()
+    def observe(self) -> Dynamics:
+        """Bring axial forces, lengths, reactions and energies up to date with the state; returns what knows them."""
+        observer = self.programs.observer
+        observer.observe()
+        return observer
 
     def _measured(self) -> Column:
         """The measures of the present state."""
-        self.observe()
-        return self.program.measures
+        return self.observe().measures
 
     @property
     def energy(self) -> Energy:

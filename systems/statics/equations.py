@@ -24,7 +24,7 @@ from pinjoint.components.rod import bends
 from pinjoint.components.table import flags
 from pinjoint.components.theory import EXACT, FIRST_ORDER, THEORIES
 from pinjoint.systems.islands import lowest_joined
-from pinjoint.systems.statics.assembly import DENSE, Assembly, Matrix, sparse_order, spread_by_ends
+from pinjoint.systems.statics.assembly import Assembly, Matrix, spread_by_ends
 from pinjoint.systems.statics.bending import Bending, Bent
 
 if TYPE_CHECKING:  # only large structures need it
@@ -198,18 +198,15 @@ class Structure:
 
     # --- unknowns ----------------------------------------------------------------------------------
 
-    @cached_property
+    @property
     def index(self) -> Rows:
-        """Indices of the unknowns in a flattened field, (N,), in an order that keeps factors sparse."""
-        index = np.flatnonzero(self.unknown.ravel())
-        if not self.sparse or len(index) <= DENSE:
-            return index
-        return index[sparse_order(self.ends, self.width, len(self.position), index)]
+        """Indices of the unknowns in a flattened field, (N,)."""
+        return self.assembly.index
 
     @cached_property
     def assembly(self) -> Assembly:
         """Where the entries of rods' matrices go."""
-        return Assembly(self.ends, self.unknown.shape, self.index, self.sparse and self.size > DENSE)
+        return Assembly.of(self.ends, self.unknown, sparse=self.sparse)
 
     @property
     def size(self) -> int:

@@ -19,20 +19,23 @@ from pinjoint.components.field import Role
 from pinjoint.components.language import spoken
 from pinjoint.components.model import Model
 from pinjoint.documents import models
+from pinjoint.documents.document import document
 from pinjoint.editor.view_model import COMPILING
 from pinjoint.elsewhere import UNITS, Job, parts_of, problem_of
 from pinjoint.preparation import Preparation, _job, _jobs_of, is_live
 from pinjoint.session import Session
 from pinjoint.systems.input import pygame_input
+from pinjoint.systems.physics import automatic
 from pinjoint.systems.program import cache
 from pinjoint.systems.program import compiler as programs
 from pinjoint.systems.program.compiler import Choice, Compile, GeneratedModule, forget_unused
 from pinjoint.systems.program.program import module_of
 from pinjoint.systems.program.writer import FEW
 from pinjoint.systems.render.backends.raster import RASTER
+from pinjoint.systems.run import programs as run_programs
 from tests.benchmarks.models import lattice, mesh, overlapping, touching
 
-RAW_LOAD = GeneratedModule.load_kept
+RAW_LOAD, RAW_CHOICE = GeneratedModule.load_kept, automatic.choose
 
 
 class Process:
@@ -155,6 +158,30 @@ def test_stepping_and_the_force_method_begin_at_once_too(app: App, action: str) 
     moved = session.model if action == "." else session.scenes.active.guide.moving[0].model  # type: ignore[attr-defined]
     assert moved.clock.steps > 0
     assert COMPILING.partition(":")[0] not in session.view.status.notice
+
+
+def test_a_hand_that_drags_in_pause_chooses_no_integrator(
+    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """That takes all modes of a small model, in each frame."""
+    session, chosen = app.session, list[str]()
+    session.press("i")
+    until(app, lambda: session.simulation.programs.ready)
+    monkeypatch.setattr(run_programs, "choose", lambda model: chosen.append(model.context) or RAW_CHOICE(model))
+    x, y = session.view.camera.to_pixels(session.particles["B"].position).tolist()
+    session.press("drag", (x, y))
+    for number in range(1, 4):
+        session.view.pointer = x + 5.0 * number, y
+        session.press("drag to", session.view.pointer)
+        frames(app, 1)
+        assert number == 1 or session.model.context not in chosen
+        chosen.clear()
+        again = Session(models.load(document(session.model)))
+        assert session.rods.axial_force.tolist() == again.rods.axial_force.tolist()
+    session.press("drop", (x + 15.0, y))
+    session.press("space")
+    frames(app, 2)
+    assert session.model.context in chosen
 
 
 def test_what_the_open_model_needs_is_compiled_first(app: App, compiler: Compiler) -> None:

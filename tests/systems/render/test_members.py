@@ -175,7 +175,16 @@ def test_a_load_over_several_rods_is_told_once() -> None:
         {name: (float(x), 0.0, CLAMPED if x == 0 else {}) for x, name in enumerate("ABCDE")},
         {f"{a} {b}": {"distributed_force": [0.0, -5.0]} for a, b in ("AB", "BC", "CD", "DE")},
     )
-    assert drawn(opened(source)).texts.count("5 kN/m") == 1
+    session = opened(source)
+    assert drawn(session).texts.count("5 kN/m") == 1
+    session.view.all_diagrams, session.rods["DE"].distributed_force = True, (0.0, -2.5)
+    picture = drawn(session)
+    assert [picture.texts.count(text) for text in ("5 kN/m", "2.5 kN/m")] == [1, 1]
+    heads = [m for m in picture.marks if isinstance(m, Strokes) and m.colour[:3] == LIGHT.load[:3]]
+    lengths = np.concatenate([np.abs(mark.end - mark.start)[:, 1] for mark in heads])
+    assert len(set(lengths[lengths > 2.0].round(3).tolist())) == 2, (
+        "what is told once ends where another begins"
+    )
 
 
 def test_moments_turn_as_they_act() -> None:
