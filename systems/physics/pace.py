@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.load import loads_end
+from pinjoint.components.load import CONSTANT
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.rod import bends
@@ -128,8 +129,9 @@ def _forces(model: Model) -> Array:
     force: Array = model.particles.constant_force.copy()
     moment = model.particles.constant_moment.copy()
     for load in model.loads:
-        force[load.on] += load.force
-        moment[load.on] += load.moment
+        if load.history["kind"] != CONSTANT["kind"]:  # which acts among the constant forces
+            force[load.on] += load.force
+            moment[load.on] += load.moment
     return (np.column_stack([force, moment]) if bends(model) else force).ravel()
 
 
