@@ -7,8 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.load import loads_end
-from pinjoint.components.load import CONSTANT
+from pinjoint.components.load import CONSTANT, loads_end
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.rod import bends

@@ -11,6 +11,7 @@ from pinjoint.documents import models
 from pinjoint.documents.exaggeration import DRAWN, Exaggeration
 from pinjoint.editor.view_model import exaggerate
 from pinjoint.session import Session
+from pinjoint.systems.physics.pace import expected_response
 
 STIFF = [
     "isostatic",
@@ -161,3 +162,15 @@ def test_nothing_breaks_without_elements_or_with_impossible_numbers() -> None:
     hostile["rods"][0]["stiffness"] = 1e-29
     review = Exaggeration(models.load(hostile))
     review.review(still=True)
+
+
+def test_a_constant_load_counts_once() -> None:
+    """Constant loads are part of the constant force, to which all loads were added."""
+    content = truss()
+    for particle in content["particles"]:
+        if force := particle.pop("force", None):
+            content.setdefault("loads", []).append({"on": particle["name"], "force": force})
+    of_loads, of_forces = expected_response(models.parse(content)), expected_response(models.parse(truss()))
+    assert of_loads is not None
+    assert of_forces is not None
+    assert np.array_equal(of_loads[0], of_forces[0])
