@@ -32,13 +32,10 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.state import StaticState
 
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
-MOST_COMPARED = 300  # rods, up to which both theories take a moment only
+_MOST_COMPARED = 300  # rods, up to which both theories take a moment only
 REST = 0.2  # s without an edit, after which a window compares them
-PART, MOST, DRAWN = (
-    0.03,
-    0.25,
-    0.5,
-)  # s of a frame that solving gets in a window, at least and at most; and of the last one
+# Of a frame of a window, for solving: at least and at most (s), and the share of the last one.
+PART, _MOST, _SHARE = 0.03, 0.25, 0.5
 SMALL = 200  # rods, up to which first order is found within the frame
 _CHOICES = "theory", "load_steps"  # of the settings
 _MOVED = "displacement", "rotation"  # of constrained directions: settled supports
@@ -169,7 +166,7 @@ class Statics:
 
     def share_frames(self, elapsed: float) -> None:
         """Let a window that has taken so long since its last frame (s) go on while something is solved."""
-        self.part = min(max(PART, DRAWN * elapsed), MOST)
+        self.part = min(max(PART, _SHARE * elapsed), _MOST)
         self.go_on()
 
     def go_on(self, *, to_the_end: bool = False) -> None:
@@ -227,12 +224,9 @@ class Statics:
         another solution; None: at once.
         """
         settlement = self.settlement
-        if (
-            self.is_late
-            or settlement is None
-            or not settlement.final.balanced
-            or self._model.rods.count > MOST_COMPARED
-        ):
+        if self.is_late or settlement is None or not settlement.final.balanced:
+            return ""
+        if self._model.rods.count > _MOST_COMPARED:
             return ""
         if elapsed is not None:
             self._rest = self.revision, self._rest[1] + elapsed if self._rest[0] == self.revision else 0.0

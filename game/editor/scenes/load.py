@@ -15,6 +15,7 @@ from pinjoint.editor.scenes.files import FileScene, saved_models
 from pinjoint.lessons import progress
 from pinjoint.lessons.progress import is_done, shelf
 from pinjoint.scripts.script import Script, lessons
+from pinjoint.systems.input.actions import ACTIONS
 
 LESSONS = marked("Begin here")
 TRUSSES, BENDING, COLLISIONS = EXAMPLES = marked("Trusses"), marked("Members that bend"), marked("Collisions")
@@ -71,6 +72,8 @@ class Load(FileScene):
         """Open the source of a tile; the tile "Discard", chosen twice, discards unsaved work."""
         if tile.source is ALL:
             self.form.tiles.remove(tile)
+        elif tile.source is None:
+            ACTIONS["new"].perform(context, context.view.pixel)
         elif tile.source is not DISCARD:
             self._open(context, tile.source)
         elif self._asked and context.autosave is not None:
