@@ -79,7 +79,7 @@ def command(words: Sequence[str]) -> int:
         help=tr("show program's version number and exit"),
     )
     options = parser.parse_args(words)
-    source = options.model or script.EMPTY
+    source = options.model or script.NEW
     model, file = models.load(source), file_of(source)
     with writing(options.record):
         in_window(model, file, options.theme, record=(options.record, source))
