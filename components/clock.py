@@ -92,7 +92,7 @@ CollisionState = FreeFlightState | PersistentContacts
 _KINDS: dict[str, type[CollisionState]] = {cls.kind: cls for cls in (FreeFlightState, PersistentContacts)}
 
 
-def check_collision_state(value: Any, where: str) -> CollisionState:
+def _check_collision_state(value: Any, where: str) -> CollisionState:
     """The collision state that a model file holds. Raises FieldError."""
     if isinstance(value, FreeFlightState | PersistentContacts):
         return value
@@ -132,7 +132,7 @@ def _replaced(value: Any, old: Any, new: Any) -> Any:
     return new if value == old else value
 
 
-def check_events(value: Any, where: str) -> Mapping[str, tuple[str, ...]]:
+def _check_events(value: Any, where: str) -> Mapping[str, tuple[str, ...]]:
     """Names of elements by the name of an event, from what a model file holds. Raises FieldError."""
     if isinstance(value, Mapping) and all(isinstance(names, list | tuple) for names in value.values()):
         found = {str(event): tuple(names) for event, names in value.items()}
@@ -199,13 +199,13 @@ class Clock(Handle):
         dtype=object,
         nullable=True,
         doc="The elements whose quantity is negative, by the name of the event.",
-        checker=check_events,
+        checker=_check_events,
     )
     collision_state: Field[CollisionState | None] = state(
         dtype=object,
         nullable=True,
         doc="Paths of free particles, or persistent contacts of driven ones, so that the run goes on bit for bit.",
-        checker=check_collision_state,
+        checker=_check_collision_state,
     )
     departure: Field[Snapshot | None] = state(
         dtype=object,

@@ -21,7 +21,7 @@ PAUSE, STATICS = HUBS = ("pause", "statics")
 MOST_LOAD_STEPS = 100
 
 
-def check_load_steps(value: Any, where: str) -> tuple[float, ...]:
+def _check_load_steps(value: Any, where: str) -> tuple[float, ...]:
     """Load factors, or FieldError."""
     steps = value.tolist() if hasattr(value, "tolist") else value
     if (
@@ -106,7 +106,7 @@ class Settings(Handle):
         dtype=object,
         default=(1.0,),
         doc="Of statics: the factors of forces and loads that follow one another; the last is shown.",
-        checker=check_load_steps,
+        checker=_check_load_steps,
     )
     opens_in: Field[str] = look(
         dtype=str,

@@ -94,7 +94,8 @@ class Snapshot(Mapping[str, Any]):
     def column(self, world: World, name: str) -> Column:
         """A state column, "table.field", by the rows of now; entities that did not exist then get its default."""
         table_name, _, field = name.partition(".")
-        if self._has_rows_of_now(world, table_name):
+        now = world.orders
+        if self.entities is now or np.array_equal(self.entities[table_name], now[table_name]):
             return self.columns[name]
         table, rows = world.tables[table_name], world.row_of_entity[self.entities[table_name]]
         column = table.fields[field].allocate(table.count)
@@ -108,11 +109,6 @@ class Snapshot(Mapping[str, Any]):
             for name in kept:
                 table.storage(name)[...] = self.column(world, f"{table.name}.{name}")
             table.mark(kept, Role.STATE)
-
-    def _has_rows_of_now(self, world: World, table: str) -> bool:
-        """True if the rows of a table belong to the same entities as then."""
-        now = world.orders
-        return self.entities is now or np.array_equal(self.entities[table], now[table])
 
 
 def check_departure(value: Any, where: str) -> Mapping[str, Any]:

@@ -34,7 +34,7 @@ from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
 
-if TYPE_CHECKING:  # they import scipy
+if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.buckling import Buckling
     from pinjoint.systems.statics.path import Curve
     from pinjoint.systems.statics.settle import Settlement

@@ -11,9 +11,9 @@ import pinjoint.editor.actions
 import pinjoint.lessons.actions  # noqa: F401 (they register them)
 from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import FieldError, Vector
+from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, joined, listed, marked, tr
-from pinjoint.components.mistake import WrongValue
+from pinjoint.components.mistake import Mistake, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod, bends
 from pinjoint.components.settings import NO_DIAGRAMS, PAUSE, STATICS
@@ -34,7 +34,6 @@ from pinjoint.mods.mod import blamed_on_mod
 from pinjoint.scripts.expectation import check
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.base import Phase, System
-from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.dividing import divide
 from pinjoint.systems.input.actions import ACTIONS, FILES, FORMS, LIVE, SIMULATION, TABLE, TEXT
 from pinjoint.systems.run.system import Time
@@ -124,7 +123,7 @@ class Session(Headless):
         exaggerate(self)
         try:
             action.perform(self, pixel if pixel is not None else self.view.pixel)
-        except (Refusal, FieldError) as error:
+        except Mistake as error:
             self.notice = str(error)
         self.scenes.apply(self)
         take_up_lesson(self)

@@ -51,10 +51,10 @@ OF_ARGPARSE = (
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that refuses in one sentence; values of options may begin with a minus: -1,2."""
+    """The parser of a command, which refuses in one sentence; values of options may begin with a minus: -1,2."""
 
-    def __init__(self, *args: Any, **options: Any) -> None:
-        super().__init__(*args, **options)
+    def __init__(self, command: str = "", about: str = "", /, **options: Any) -> None:
+        super().__init__(**{"prog": f"pinjoint {command}".rstrip(), "description": tr(about)} | options)
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def parse_args(self, *args: Any, **options: Any) -> Any:
@@ -85,6 +85,25 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         sentence = message[:1].upper() + message[1:]
         raise UsageError("{sentence}. See: {program} --help", sentence=sentence, program=self.prog)
+
+
+def option(
+    to: argparse._ActionsContainer, usage: str, about: str, kind: Callable[[str], Any] = str, **how: Any
+) -> None:
+    """Add an option, or an argument, to a parser or a group of options.
+
+    usage: how it is written, such as "--seed N". about: its sentence in --help, in the language of the person. kind: makes
+    a value of what a person writes.
+    """
+    name, _, value = usage.partition(" ")
+    if "action" not in how or value:
+        how = {"metavar": value or None, "type": kind} | how
+    to.add_argument(name, help=tr(about), **how)
+
+
+def flag(to: argparse._ActionsContainer, name: str, about: str) -> None:
+    """Add an option without a value."""
+    option(to, name, about, action="store_true")
 
 
 def _paths(value: Any) -> list[Path]:

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.commands.arguments import Parser, UsageError, flag, option
 from pinjoint.commands.options import ANSWERED
 from pinjoint.commands.output import Row, add_format, aligned, formatted, write, writing
 from pinjoint.components import written
@@ -28,23 +28,18 @@ Tables = Mapping[str, Sequence[Mapping[str, Any]]]  # rows by the title of their
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
-        prog="pinjoint bench",
-        description=tr("Measure speed and accuracy, and compare them with other programs in the same run."),
+        "bench", "Measure speed and accuracy, and compare them with other programs in the same run."
     )
-    parser.add_argument(
-        "names",
+    option(
+        parser,
+        "names NAME",
+        tr("the benchmarks to run, of {names}; default: all", names=", ".join(NAMES)),
         nargs="*",
-        metavar="NAME",
-        help=tr("the benchmarks to run, of {names}; default: all", names=", ".join(NAMES)),
     )
-    parser.add_argument("--quick", action="store_true", help=tr("use smaller models, to end within a minute"))
-    parser.add_argument(
-        "--seed", type=int, metavar="N", help=tr("with differential: only the model with this number, in full")
-    )
+    flag(parser, "--quick", "use smaller models, to end within a minute")
+    option(parser, "--seed N", "with differential: only the model with this number, in full", int)
     add_format(parser)
-    parser.add_argument(
-        "--output", metavar="DIR", help=tr("also write CSV files and pictures into this folder")
-    )
+    option(parser, "--output DIR", "also write CSV files and pictures into this folder")
     options = parser.parse_args(words)
     for name in options.names:
         if name not in NAMES:

@@ -4,44 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from pinjoint.commands.arguments import Parser, UsageError, count
+from pinjoint.commands.arguments import Parser, UsageError, count, option
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, model_of
 from pinjoint.commands.output import Row, add_output, aligned, write_result
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.streams import tell
 from pinjoint.systems.catalogue import left_out_of_statics
-
-if TYPE_CHECKING:  # it imports scipy
-    from pinjoint.systems.statics.buckling import Buckling
+from pinjoint.systems.statics.buckling import Buckling
+from pinjoint.systems.statics.events import NoEquilibrium
 
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
-        prog="pinjoint buckling",
-        description=tr(
-            "Linear buckling: the load factors at which the structure buckles, and how it moves then."
-        ),
+        "buckling", "Linear buckling: the load factors at which the structure buckles, and how it moves then."
     )
     add_model(parser)
-    parser.add_argument(
-        "--modes",
-        type=partial(count, least=1),
-        default=5,
-        metavar="N",
-        help=tr("find at most N modes; default 5"),
-    )
+    option(parser, "--modes N", "find at most N modes; default 5", partial(count, least=1), default=5)
     add_output(parser)
     options = parser.parse_args(words)
     model = model_of(options)
-    from pinjoint.systems.statics.buckling import Buckling
-    from pinjoint.systems.statics.events import NoEquilibrium
-
     try:
         found = Buckling.of(model, options.modes)
     except NoEquilibrium as error:

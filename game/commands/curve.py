@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from pinjoint.commands.arguments import Parser, UsageError, count, finite
+from pinjoint.commands.arguments import Parser, UsageError, count, finite, option
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, model_of
 from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.components.field import ENDS
@@ -16,10 +16,9 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.streams import tell
 from pinjoint.systems.catalogue import left_out_of_statics
-
-if TYPE_CHECKING:  # it imports scipy
-    from pinjoint.systems.statics.path import Curve
-
+from pinjoint.systems.statics.explain import describe_motion
+from pinjoint.systems.statics.path import Curve, Goal
+from pinjoint.systems.statics.theory import mechanisms
 
 _UNITS = {"displacement": "m", "rotation": "rad", "axial_force": "kN", "bending_moment": "kN·m"}
 
@@ -27,40 +26,30 @@ _UNITS = {"displacement": "m", "rotation": "rad", "axial_force": "kN", "bending_
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
-        prog="pinjoint curve",
-        description=tr(
-            "Load–displacement curve: equilibria while the load grows, and while it falls again past limit points."
-        ),
+        "curve",
+        "Load–displacement curve: equilibria while the load grows, and while it falls again past limit points.",
     )
     add_model(parser)
     goal = parser.add_mutually_exclusive_group()
-    goal.add_argument(
-        "--factor", type=finite, default=1.0, help=tr("end where the load factor first reaches this; default 1")
+    option(goal, "--factor", "end where the load factor first reaches this; default 1", finite, default=1.0)
+    option(
+        goal,
+        "--until B.y=-2.5",
+        "end where a particle first has this displacement (m), or rotation, as B.rotation=1 (rad)",
     )
-    goal.add_argument(
-        "--until",
-        metavar="B.y=-2.5",
-        help=tr("end where a particle first has this displacement (m), or rotation, as B.rotation=1 (rad)"),
-    )
-    parser.add_argument(
-        "--branch",
-        type=int,
+    option(
+        parser,
+        "--branch N",
+        "at the Nth bifurcation, take the branch that buckles along its mode, or against it if N is negative;"
+        " default: stay on the main branch",
+        int,
         default=0,
-        metavar="N",
-        help=tr(
-            "at the Nth bifurcation, take the branch that buckles along its mode, or against it if N is negative;"
-            " default: stay on the main branch"
-        ),
     )
-    parser.add_argument(
-        "--points", type=count, default=500, metavar="N", help=tr("compute at most N equilibria; default 500")
-    )
+    option(parser, "--points N", "compute at most N equilibria; default 500", count, default=500)
     add_theory(parser)
     add_output(parser, default="csv")
     options = parser.parse_args(words)
     model = model_of(options)
-    from pinjoint.systems.statics.path import Curve, Goal
-
     try:
         end = Goal.of(model, options.factor, options.until)
         wanted = {name: getattr(options, name) for name in ("points", "branch", "theory")}
@@ -118,9 +107,6 @@ def _why_it_ends(model: Model, curve: Curve, most: int) -> str:
 
 def _why_nothing_follows(model: Model) -> str:
     """Why a curve ends where it begins: the motion of a mechanism in words; "" if the structure is none."""
-    from pinjoint.systems.statics.explain import describe_motion
-    from pinjoint.systems.statics.theory import mechanisms
-
     moving = mechanisms(model)
     if not len(moving):
         return ""

@@ -4,78 +4,61 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.commands.arguments import Parser, UsageError, flag, option
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, model_of
-from pinjoint.commands.output import Row, add_output, aligned, writable, write_result, writing
+from pinjoint.commands.output import Row, add_output, aligned, writable, write, write_result
 from pinjoint.components.language import tr
 from pinjoint.components.view import CONVENTIONS, THESIS
-from pinjoint.documents.models import replace
+from pinjoint.force_method import index, words
+from pinjoint.force_method.copies import exact_forces
+from pinjoint.force_method.tables import PRODUCTS, Tables
 from pinjoint.streams import tell
 from pinjoint.systems.catalogue import left_out_of_statics
-
-if TYPE_CHECKING:  # they import scipy
-    from pinjoint.force_method.tables import Tables
-
+from pinjoint.systems.statics.force_method import solve
+from pinjoint.systems.statics.unknowns import Unknown, redundants
 
 MOST_SETS = 100  # unknowns; what each does to each, and to all rods, takes 100 MB for a thousand of them
 
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
-    parser = Parser(
-        prog="pinjoint force-method",
-        description=tr("Statically indeterminate structures by the force method, as in textbooks."),
-    )
-    parser.add_argument("model", help=tr("a model file, or the name of a bundled model"))
+    parser = Parser("force-method", "Statically indeterminate structures by the force method, as in textbooks.")
+    option(parser, "model", "a model file, or the name of a bundled model")
     which = parser.add_mutually_exclusive_group(required=True)
-    which.add_argument(
-        "--release",
-        metavar="AC",
+    option(
+        which,
+        "--release AC",
+        "a bar, a reaction such as A.y or A.rotation, a moment such as AB.start; may be given several times",
         action="append",
-        help=tr(
-            "a bar, a reaction such as A.y or A.rotation, a moment such as AB.start; may be given several times"
-        ),
     )
-    which.add_argument(
-        "--all", action="store_true", help=tr("release unknowns until the structure is statically determinate")
-    )
-    parser.add_argument(
+    flag(which, "--all", "release unknowns until the structure is statically determinate")
+    option(
+        parser,
         "--convention",
+        "sign convention of the text; textbook: δ₁₀ + δ₁₁ X₁ = 0; thesis: p = (Δ − Δ₀) / Δ₁",
         choices=CONVENTIONS,
         default=CONVENTIONS[0],
-        help=tr("sign convention of the text; textbook: δ₁₀ + δ₁₁ X₁ = 0; thesis: p = (Δ − Δ₀) / Δ₁"),
     )
-    parser.add_argument(
+    flag(
+        parser,
         "--sets",
-        action="store_true",
-        help=tr(
+        tr(
             "write what each unknown alone does, too, where there are more than {count} unknowns",
             count=MOST_SETS,
         ),
     )
-    parser.add_argument(
-        "--report", type=writable, metavar="FILE.pdf", help=tr("write the whole solution to a PDF as well")
-    )
-    parser.add_argument(
-        "--set", action="append", default=[], metavar="PATH=VALUE", help=tr("change the model first")
-    )
+    option(parser, "--report FILE.pdf", "write the whole solution to a PDF as well", writable)
+    option(parser, "--set PATH=VALUE", "change the model first", action="append", default=[])
     add_output(parser, default="json")
     options = parser.parse_args(words)
     if options.report is not None and not options.report.lower().endswith(".pdf"):
         raise UsageError("--report {file}: write a file that ends with .pdf.", file=options.report)
     model, names = model_of(options), dict.fromkeys(options.release or ())
-    from pinjoint.force_method.tables import Tables
-    from pinjoint.systems.statics.force_method import solve
-    from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, redundants
-
-    try:
-        solution = solve(model, [Unknown.named(model, one) for one in names] if names else redundants(model))
-    except ForceMethodError as error:
-        raise UsageError(str(error)) from None
+    solution = solve(model, [Unknown.named(model, one) for one in names] if names else redundants(model))
     if options.report is not None and not solution.unknowns:
         raise UsageError(
             "{model} is statically determinate: there is nothing to release, and nothing to report. Equilibrium alone"
@@ -90,8 +73,7 @@ def command(words: Sequence[str]) -> int:
     if options.report is not None:
         from pinjoint.force_method.report import report
 
-        with writing(options.report):
-            replace(options.report, report(tables, options.convention))
+        write(report(tables, options.convention), options.report)
     if laws:
         tell(tr("The force method leaves out the laws of mods: {laws}.", laws=", ".join(laws)))
     return NOT_ANSWERED if laws else ANSWERED
@@ -103,8 +85,6 @@ def _data(tables: Tables, *, single: bool, sets: bool) -> dict[str, Any]:
     single: there is one unknown, so that its numbers stand alone. virtual_work: of every rod, in the order of the sums.
     sets: with what each unknown alone does; else there are no matrices, and no virtual work.
     """
-    from pinjoint.force_method.copies import exact_forces
-
     solution = tables.solution
     found: dict[str, Any] = {
         "released": [unknown.name for unknown in solution.unknowns],
@@ -130,8 +110,6 @@ def _data(tables: Tables, *, single: bool, sets: bool) -> dict[str, Any]:
 
 def _work(tables: Tables) -> dict[str, Any]:
     """By rod: what the sums of virtual work are made of; n, m and terms of each unknown in the order of `released`."""
-    from pinjoint.force_method.tables import PRODUCTS
-
     axial, bending = tables.solution.work.axial, tables.solution.work.bending
     found, count, rods, base = (
         dict[str, Any](),
@@ -189,9 +167,6 @@ def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
 
 def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterator[str]:
     """The solution to read: in the textbook's convention with its tables, in the thesis' with its displacements."""
-    from pinjoint.force_method import index, words
-    from pinjoint.force_method.tables import PRODUCTS
-
     solution = tables.solution
     yield from aligned(_rows(found))
     if not solution.unknowns or convention == THESIS:

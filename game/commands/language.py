@@ -20,7 +20,7 @@ def speak_as_asked(words: Sequence[str]) -> list[str]:
     Returns the other words. Raises UsageError for a language that there is not.
     """
     speak(asked_language() or preferred("language") or language_of_system())
-    parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
+    parser = Parser(add_help=False, allow_abbrev=False)
     parser.add_argument("--language", metavar="CODE")
     options, others = parser.parse_known_args(list(words))
     if options.language is not None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pinjoint.checks import Trial
-from pinjoint.commands.arguments import Parser
+from pinjoint.commands.arguments import Parser, option
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
 from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.components.extensions import EXTENSIONS
@@ -20,7 +20,7 @@ from pinjoint.version import __version__
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status. Raises ModError."""
-    parser = Parser(prog="pinjoint mods", description=tr("Mods extend the program; see assets/mods/README.md."))
+    parser = Parser("mods", "Mods extend the program; see assets/mods/README.md.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="list|check|new")
     add_output(commands.add_parser("list", help=tr("list the mods, and why some were left out")))
     check = commands.add_parser(
@@ -30,9 +30,7 @@ def command(words: Sequence[str]) -> int:
     add_output(check)
     new = commands.add_parser("new", help=tr("write a new mod that works, with its test"))
     new.add_argument("name", metavar="NAME")
-    new.add_argument(
-        "--into", default=".", metavar="FOLDER", help=tr("where to write it; default: the present folder")
-    )
+    option(new, "--into FOLDER", "where to write it; default: the present folder", default=".")
     options = parser.parse_args(list(words))
     if options.command == "new":
         return _new(options.name, Path(options.into))

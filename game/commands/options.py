@@ -6,10 +6,10 @@ import argparse
 import os
 from collections.abc import Iterable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pinjoint.commands.analysis import Analysis
-from pinjoint.commands.arguments import Parser, UsageError, count, numbers, positive, times
+from pinjoint.commands.arguments import Parser, UsageError, count, flag, numbers, option, positive, times
 from pinjoint.commands.progress import Progress, follow
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
@@ -31,7 +31,7 @@ ANSWERED, NOT_ANSWERED, NO_DISPLAY, STOPPED = 0, 1, 3, 130  # exit statuses; BAD
 
 def use_cores_as_asked(words: Sequence[str]) -> list[str]:
     """Read the option --cores N, which every command has, into the environment; returns the other words."""
-    parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
+    parser = Parser(add_help=False, allow_abbrev=False)
     parser.add_argument("--cores", type=partial(count, least=1), metavar="N")
     options, others = parser.parse_known_args(list(words))
     if options.cores is not None:
@@ -41,27 +41,23 @@ def use_cores_as_asked(words: Sequence[str]) -> list[str]:
 
 def add_model(parser: argparse.ArgumentParser) -> None:
     """Add the argument MODEL and the options that change the model before anything is computed."""
-    parser.add_argument("model", help=tr("a model file, or the name of a bundled model"))
-    change = partial(parser.add_argument, dest="set", action="append", default=[])
-    change(
-        "--integrator",
-        type="settings.integrator={}".format,
-        metavar="NAME",
-        help=tr("how to step through time: {names}", names=", ".join(INTEGRATORS)),
+    option(parser, "model", "a model file, or the name of a bundled model")
+    change: dict[str, Any] = {"dest": "set", "action": "append", "default": []}
+    how = tr("how to step through time: {names}", names=", ".join(INTEGRATORS))
+    option(parser, "--integrator NAME", how, "settings.integrator={}".format, **change)
+    option(
+        parser,
+        "--time-step S",
+        "use a fixed time step, in seconds",
+        lambda text: f"settings.time_step={positive(text)}",
+        **change,
     )
-    change(
-        "--time-step",
-        type=lambda text: f"settings.time_step={positive(text)}",
-        metavar="S",
-        help=tr("use a fixed time step, in seconds"),
-    )
-    change(
-        "--set",
-        metavar="PATH=VALUE",
-        help=tr(
-            "change a value of the model first, such as particles.B.force=120,-160 or rods.*.damping=0;"
-            " may be given several times"
-        ),
+    option(
+        parser,
+        "--set PATH=VALUE",
+        "change a value of the model first, such as particles.B.force=120,-160 or rods.*.damping=0;"
+        " may be given several times",
+        **change,
     )
 
 
@@ -102,47 +98,46 @@ def _prepare(model: Model, options: argparse.Namespace, *progress: Progress) -> 
 
 def add_theory(parser: argparse.ArgumentParser, default: str | None = EXACT) -> None:
     """Add the option of the theory of statics; default: None where it says nothing by itself."""
-    parser.add_argument(
+    option(
+        parser,
         "--theory",
-        choices=THEORIES,
-        default=default,
-        help=tr(
+        tr(
             "the theory of statics: first-order, about the original shape, or exact, about the deformed one; default"
             " {default}",
             default=default or EXACT,
         ),
+        choices=THEORIES,
+        default=default,
     )
 
 
 def add_analysis(parser: argparse.ArgumentParser) -> None:
     """Add the options of the analysis: equilibria, the state at certain times, or the state at rest."""
     how = parser.add_mutually_exclusive_group()
-    how.add_argument("--until-rest", action="store_true", help=tr("run until nothing moves (the default)"))
-    how.add_argument(
-        "--static", action="store_true", help=tr("find the equilibrium directly, without running through time")
-    )
-    how.add_argument("--at", metavar="T1,T2,…", help=tr("report the state at exactly these times (s)"))
-    parser.add_argument(
-        "--load-factors",
-        metavar="F1,F2,…",
-        help=tr("with --static: find the equilibrium at each of these load factors, one after the other"),
+    flag(how, "--until-rest", "run until nothing moves (the default)")
+    flag(how, "--static", "find the equilibrium directly, without running through time")
+    option(how, "--at T1,T2,…", "report the state at exactly these times (s)")
+    option(
+        parser,
+        "--load-factors F1,F2,…",
+        "with --static: find the equilibrium at each of these load factors, one after the other",
     )
     add_theory(parser, None)
-    parser.add_argument(
-        "--limit",
-        type=positive,
+    option(
+        parser,
+        "--limit SECONDS",
+        "stop waiting for rest after this much simulated time",
+        positive,
         default=DEFAULT_LIMIT,
-        metavar="SECONDS",
-        help=tr("stop waiting for rest after this much simulated time"),
     )
 
 
 def analysis_of(options: argparse.Namespace) -> Analysis:
     """The analysis of `add_analysis`. Raises UsageError."""
     factors = numbers("--load-factors", options.load_factors) if options.load_factors is not None else None
-    for option, given in (("--load-factors", factors), ("--theory", options.theory)):
+    for name, given in (("--load-factors", factors), ("--theory", options.theory)):
         if given is not None and not options.static:
-            raise UsageError("{option} works only together with --static; add it.", option=option)
+            raise UsageError("{option} works only together with --static; add it.", option=name)
     return Analysis(
         load_factors=(factors or (1.0,)) if options.static else None,
         times=times(options.at) if options.at is not None else None,

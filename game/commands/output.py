@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from pinjoint.commands.arguments import UsageError
+from pinjoint.commands.arguments import UsageError, option
 from pinjoint.components import written
 from pinjoint.components.language import ENGLISH, Said, decimals, english, spoken, tr
 from pinjoint.components.mistake import Mistake
@@ -53,23 +53,19 @@ def writable(text: str) -> str:
 
 def add_format(parser: argparse.ArgumentParser, default: Format = "table") -> None:
     """Add the option --format alone, to commands whose --output is not a file."""
-    parser.add_argument(
+    option(
+        parser,
         "--format",
+        tr("the format of the output; default {format}", format=default),
         choices=FORMATS,
         default=default,
-        help=tr("the format of the output; default {format}", format=default),
     )
 
 
 def add_output(parser: argparse.ArgumentParser, default: Format = "table") -> None:
     """Add the options --format and --output of `write_result`."""
     add_format(parser, default)
-    parser.add_argument(
-        "--output",
-        type=writable,
-        metavar="FILE",
-        help=tr("write the output to this file instead of the terminal"),
-    )
+    option(parser, "--output FILE", "write the output to this file instead of the terminal", writable)
 
 
 # --- writing -------------------------------------------------------------------------------------------
@@ -106,13 +102,13 @@ def formatted(
     return "".join(f"{line}\n" for line in aligned([list(map(tr, titles)), *others]))
 
 
-def write(text: str, path: str | None) -> None:
-    """Write a text to a file, whole or not at all, or to standard output if None. Raises UsageError."""
+def write(content: str | bytes, path: str | None) -> None:
+    """Write to a file, whole or not at all, or to standard output if None. Raises UsageError."""
     with writing(path or tr("Standard output")):
         if path is None:
-            put(text)
+            put(str(content))
         else:
-            replace(path, text.encode())
+            replace(path, content if isinstance(content, bytes) else content.encode())
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.commands.arguments import Parser, UsageError, option
 from pinjoint.commands.options import ANSWERED, add_model, session_of
 from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.components.language import tr
@@ -18,15 +18,11 @@ from pinjoint.systems.base import Phase
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
-        prog="pinjoint plan",
-        description=tr(
-            "List the systems (parts of the program) that run in a scene of the window, in their order in a frame."
-        ),
+        "plan",
+        "List the systems (parts of the program) that run in a scene of the window, in their order in a frame.",
     )
     add_model(parser)
-    parser.add_argument(
-        "--scene", default="simulation", metavar="NAME", help=tr("the scene; default simulation")
-    )
+    option(parser, "--scene NAME", "the scene; default simulation", default="simulation")
     add_output(parser)
     options = parser.parse_args(words)
     from pinjoint.app import window_systems  # pygame takes a while to import

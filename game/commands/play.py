@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from pinjoint.commands.arguments import Parser
+from pinjoint.commands.arguments import Parser, flag, option
 from pinjoint.commands.language import asked_language
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
 from pinjoint.commands.output import Row, add_output, write_result
@@ -26,24 +26,18 @@ from pinjoint.streams import tell
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
-        prog="pinjoint play",
-        description=tr(
-            "Play a recorded or written session, or a lesson, in the real program. Of a lesson with tasks, all"
-            " solutions and wrong answers are checked."
-        ),
+        "play",
+        "Play a recorded or written session, or a lesson, in the real program. Of a lesson with tasks, all"
+        " solutions and wrong answers are checked.",
         epilog=tr("Lessons: {names}", names=", ".join([*script.lessons(script.TO_DO), *script.lessons()])),
     )
-    parser.add_argument("script", metavar="SCRIPT", help=tr("a file of JSON lines, or the name of a lesson"))
-    parser.add_argument(
-        "--window",
-        action="store_true",
-        help=tr("show it in a window, slowly enough to follow; then go on by hand"),
-    )
-    parser.add_argument(
-        "--data",
-        type=Path,
-        metavar="FOLDER",
-        help=tr("where the session saves and opens files; default: an empty folder that is deleted afterwards"),
+    option(parser, "script SCRIPT", "a file of JSON lines, or the name of a lesson")
+    flag(parser, "--window", "show it in a window, slowly enough to follow; then go on by hand")
+    option(
+        parser,
+        "--data FOLDER",
+        "where the session saves and opens files; default: an empty folder that is deleted afterwards",
+        Path,
     )
     add_output(parser)
     options = parser.parse_args(words)

@@ -14,10 +14,9 @@ import numpy as np
 
 from pinjoint import pictures
 from pinjoint.commands.analysis import FOUND
-from pinjoint.commands.arguments import Parser, UsageError, positive
+from pinjoint.commands.arguments import Parser, UsageError, flag, option, positive
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, session_of
 from pinjoint.commands.output import writable, writing
-from pinjoint.components.language import tr
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.view import drawn_places
@@ -69,87 +68,72 @@ def command(words: Sequence[str]) -> int:
 
 
 def _parser() -> Parser:
-    parser = Parser(prog="pinjoint render", description=tr("Draw a model, or its run as a GIF, to a file."))
+    parser = Parser("render", "Draw a model, or its run as a GIF, to a file.")
     add_model(parser)
-    parser.add_argument(
-        "--output",
-        type=writable,
+    option(
+        parser,
+        "--output FILE",
+        "the file to write: .png, .svg or .pdf, or .gif to show the run",
+        writable,
         required=True,
-        metavar="FILE",
-        help=tr("the file to write: .png, .svg or .pdf, or .gif to show the run"),
     )
-    parser.add_argument(
-        "--size",
+    option(
+        parser,
+        "--size WIDTHxHEIGHT",
+        "the size in pixels; default 1280x800; type grows with it",
         default="1280x800",
-        metavar="WIDTHxHEIGHT",
-        help=tr("the size in pixels; default 1280x800; type grows with it"),
     )
-    parser.add_argument(
-        "--until-rest", action="store_true", help=tr("run until at rest first (the default of a .gif)")
-    )
-    parser.add_argument("--at", type=positive, metavar="T", help=tr("run to this time (s) first"))
-    parser.add_argument(
+    flag(parser, "--until-rest", "run until at rest first (the default of a .gif)")
+    option(parser, "--at T", "run to this time (s) first", positive)
+    flag(
+        parser,
         "--static",
-        action="store_true",
-        help=tr(
-            "draw the static equilibrium, from the undeformed beginning, by the theory of the model or --theory"
-        ),
+        "draw the static equilibrium, from the undeformed beginning, by the theory of the model or --theory",
     )
     add_theory(parser, None)
     undeformed = parser.add_mutually_exclusive_group()
-    undeformed.add_argument(
+    option(
+        undeformed,
         "--undeformed",
+        "with --static: draw the undeformed structure, and its deflected shape thin (the usual way)",
         action="store_true",
         default=None,
-        help=tr("with --static: draw the undeformed structure, and its deflected shape thin (the usual way)"),
     )
-    undeformed.add_argument(
+    option(
+        undeformed,
         "--deformed",
+        "with --static: draw the deformed structure, with its diagrams",
         action="store_false",
         dest="undeformed",
         default=None,
-        help=tr("with --static: draw the deformed structure, with its diagrams"),
     )
-    parser.add_argument("--diagrams", action="store_true", help=tr("draw all force diagrams"))
-    parser.add_argument(
+    flag(parser, "--diagrams", "draw all force diagrams")
+    option(
+        parser,
         "--diagrams-of",
+        "draw all diagrams of one quantity: the axial force N, or where rods bend the bending moment M or the shear"
+        " force V",
         choices=DIAGRAMS,
-        help=tr(
-            "draw all diagrams of one quantity: the axial force N, or where rods bend the bending moment M or the shear"
-            " force V"
-        ),
     )
-    parser.add_argument(
-        "--utilisation", action="store_true", help=tr("colour rods by utilisation: force over strength")
-    )
+    flag(parser, "--utilisation", "colour rods by utilisation: force over strength")
     shape = parser.add_mutually_exclusive_group()
-    shape.add_argument(
-        "--mechanism",
-        type=int,
-        metavar="N",
-        help=tr("also draw the Nth mechanism: a motion that stretches no rod"),
+    option(shape, "--mechanism N", "also draw the Nth mechanism: a motion that stretches no rod", int)
+    option(
+        shape,
+        "--mode N",
+        "also draw the Nth natural mode, 1 the lowest; of the loaded structure if it is at rest",
+        int,
     )
-    shape.add_argument(
-        "--mode",
-        type=int,
-        metavar="N",
-        help=tr("also draw the Nth natural mode, 1 the lowest; of the loaded structure if it is at rest"),
-    )
-    shape.add_argument(
-        "--buckling-mode", type=int, metavar="N", help=tr("also draw the Nth buckling mode, 1 the lowest")
-    )
-    parser.add_argument(
-        "--theme", choices=theme_names(), default="light", help=tr("the colours; default light")
-    )
-    parser.add_argument(
+    option(shape, "--buckling-mode N", "also draw the Nth buckling mode, 1 the lowest", int)
+    option(parser, "--theme", "the colours; default light", choices=theme_names(), default="light")
+    option(
+        parser,
         "--background",
+        "the background, for pictures in reports; default theme",
         choices=("theme", "white", "transparent"),
         default="theme",
-        help=tr("the background, for pictures in reports; default theme"),
     )
-    parser.add_argument(
-        "--plain", action="store_true", help=tr("leave out the grid, the scale and what is said of scales")
-    )
+    flag(parser, "--plain", "leave out the grid, the scale and what is said of scales")
     parser.add_argument("--limit", type=positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
     return parser
 

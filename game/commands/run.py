@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from pinjoint.commands.analysis import FOUND, INTERRUPTED, Run, State
-from pinjoint.commands.arguments import Parser
+from pinjoint.commands.arguments import Parser, flag, option
 from pinjoint.commands.options import (
     ANSWERED,
     NOT_ANSWERED,
@@ -44,19 +44,13 @@ _ERRORS = {
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
-    parser = Parser(
-        prog="pinjoint run", description=tr("Compute a model without a window, and print the result.")
-    )
+    parser = Parser("run", "Compute a model without a window, and print the result.")
     add_model(parser)
     add_analysis(parser)
     add_output(parser)
-    parser.add_argument(
-        "--events", type=writable, metavar="FILE", help=tr("write all impacts to this file, as CSV")
-    )
-    parser.add_argument(
-        "--measure-error",
-        action="store_true",
-        help=tr("measure the error by a second run with finer steps, even if that takes long"),
+    option(parser, "--events FILE", "write all impacts to this file, as CSV", writable)
+    flag(
+        parser, "--measure-error", "measure the error by a second run with finer steps, even if that takes long"
     )
     options = parser.parse_args(words)
     analysis = replace(analysis_of(options), measures_error=options.measure_error)

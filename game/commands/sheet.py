@@ -4,29 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pinjoint.commands.arguments import Parser
+from pinjoint.commands.arguments import Parser, option
 from pinjoint.commands.options import ANSWERED, add_model, add_theory, model_of
-from pinjoint.commands.output import writable, writing
-from pinjoint.components.language import tr
+from pinjoint.commands.output import writable, write
 from pinjoint.components.theory import FIRST_ORDER
-from pinjoint.documents.models import replace
 
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
-        prog="pinjoint sheet",
-        description=tr(
-            "Write a PDF with a drawing of a structure, its diagrams, its deflected shape, and tables."
-        ),
+        "sheet", "Write a PDF with a drawing of a structure, its diagrams, its deflected shape, and tables."
     )
     add_model(parser)
-    parser.add_argument("--output", type=writable, required=True, metavar="FILE", help=tr("the PDF to write"))
+    option(parser, "--output FILE", "the PDF to write", writable, required=True)
     add_theory(parser, FIRST_ORDER)
     options = parser.parse_args(words)
     from pinjoint.sheet import sheet  # it imports reportlab and scipy
 
-    made = sheet(model_of(options), options.theory)
-    with writing(options.output):
-        replace(options.output, made)
+    write(sheet(model_of(options), options.theory), options.output)
     return ANSWERED

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pinjoint.commands.analysis import FOUND
-from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.commands.arguments import Parser, UsageError, option
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, add_analysis, add_model, analysis_of
 from pinjoint.components.language import tr
 from pinjoint.streams import tell
@@ -60,38 +60,29 @@ def command(words: Sequence[str]) -> int:
 
 def _parser() -> Parser:
     parser = Parser(
-        prog="pinjoint sweep",
-        description=tr(
-            "Compute many variants of a model, and write one line of results for each; a variant that fails is recorded"
-            " with the reason."
-        ),
+        "sweep",
+        "Compute many variants of a model, and write one line of results for each; a variant that fails is recorded"
+        " with the reason.",
     )
     add_model(parser)
     add_analysis(parser)
-    add = parser.add_argument
-    add("--vary", action="append", required=True, metavar="PATH=…", help=tr(FORMS))
-    add(
-        "--measure",
+    option(parser, "--vary PATH=…", FORMS, action="append", required=True)
+    option(
+        parser,
+        "--measure PATH,…",
+        "what to write of each variant, such as rods.CD.plastic_strain",
         action="append",
         required=True,
-        metavar="PATH,…",
-        help=tr("what to write of each variant, such as rods.CD.plastic_strain"),
     )
-    add(
-        "--output",
-        required=True,
-        metavar="FILE",
-        help=tr("the file of results, such as results.csv or results.parquet"),
+    option(
+        parser, "--output FILE", "the file of results, such as results.csv or results.parquet", required=True
     )
-    add("--plot", metavar="FILE.png", help=tr("also draw the results over the first varied value"))
-    add("--samples", type=int, metavar="N", help=tr("how many variants to draw from distributions (~)"))
-    add("--seed", type=int, default=0, metavar="N", help=tr("the seed of the random numbers; default 0"))
+    option(parser, "--plot FILE.png", "also draw the results over the first varied value")
+    option(parser, "--samples N", "how many variants to draw from distributions (~)", int)
+    option(parser, "--seed N", "the seed of the random numbers; default 0", int, default=0)
     where = parser.add_mutually_exclusive_group()
-    where.add_argument(
-        "--workers",
-        type=int,
-        metavar="N",
-        help=tr("how many processes to use on this machine; chosen automatically by default"),
+    option(
+        where, "--workers N", "how many processes to use on this machine; chosen automatically by default", int
     )
-    where.add_argument("--scheduler", metavar="tcp://…", help=tr("compute on a running Dask cluster"))
+    option(where, "--scheduler tcp://…", "compute on a running Dask cluster")
     return parser

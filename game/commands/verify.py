@@ -4,54 +4,43 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pinjoint.commands.arguments import Parser, UsageError, positive
+from pinjoint.commands import comparison, influence
+from pinjoint.commands.arguments import Parser, UsageError, flag, option, positive
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, headless_of
 from pinjoint.commands.output import add_output, write_result
-from pinjoint.components.language import tr
+from pinjoint.systems.statics.events import NoEquilibrium
 
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
-        prog="pinjoint verify",
-        description=tr(
-            "Run the simulation to rest, and compare it with linear theory and with exact theory (large displacements)."
-        ),
+        "verify",
+        "Run the simulation to rest, and compare it with linear theory and with exact theory (large displacements).",
     )
     add_model(parser)
-    parser.add_argument(
-        "--influence",
+    option(
+        parser,
+        "--influence NAME",
+        "print influence lines instead: of the axial force of rod AB; of its moments, AB.start and AB.end, or its"
+        " shear force, AB.shear; of a reaction, A.y or A.rotation; or of a displacement, B.y (unit-load method)",
         nargs="+",
-        metavar="NAME",
-        help=tr(
-            "print influence lines instead: of the axial force of rod AB; of its moments, AB.start and AB.end, or its"
-            " shear force, AB.shear; of a reaction, A.y or A.rotation; or of a displacement, B.y (unit-load method)"
-        ),
     )
-    parser.add_argument("--theory-only", action="store_true", help=tr("leave out the simulation"))
-    parser.add_argument(
-        "--limit",
-        type=positive,
-        metavar="SECONDS",
-        help=tr(
-            "simulate until at rest, at most for this time; without it, a simulation that would take long is left out"
-        ),
+    flag(parser, "--theory-only", "leave out the simulation")
+    option(
+        parser,
+        "--limit SECONDS",
+        "simulate until at rest, at most for this time; without it, a simulation that would take long is left out",
+        positive,
     )
     add_output(parser)
     options = parser.parse_args(words)
     session = headless_of(options)
-    from pinjoint.commands import comparison, influence
-    from pinjoint.systems.statics.events import NoEquilibrium
-    from pinjoint.systems.statics.unknowns import ForceMethodError
-
     try:
         if options.influence:
             lines = influence.influence(session.model, options.influence)
             write_result(options, lines, influence.rows, influence.lines)
             return ANSWERED
         found = comparison.compare(session, options.model, options.limit, simulate=not options.theory_only)
-    except ForceMethodError as error:
-        raise UsageError(str(error)) from None
     except NoEquilibrium as error:
         raise UsageError(str(error), NOT_ANSWERED) from None
     write_result(options, found, comparison.rows, comparison.lines)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.commands.arguments import Parser, UsageError, option
 from pinjoint.commands.options import ANSWERED, NO_DISPLAY
 from pinjoint.commands.output import writable, writing
 from pinjoint.commands.with_mods import in_use
@@ -59,24 +59,20 @@ def command(words: Sequence[str]) -> int:
     if words:
         _refuse_misspelt(words[0])
     parser = Parser(
-        prog="pinjoint",
-        description=tr("A laboratory for particles, trusses and frames."),
+        "",
+        "A laboratory for particles, trusses and frames.",
         epilog=_epilog(),
         formatter_class=RawDescriptionHelpFormatter,
     )
-    parser.add_argument("model", nargs="?", help=tr("a model file, or the name of a bundled model"))
-    parser.add_argument(
-        "--record",
-        type=writable,
-        metavar="FILE",
-        help=tr("record the session to this file, for: pinjoint play FILE"),
-    )
-    parser.add_argument("--theme", choices=theme_names(), help=tr("the colours; default: those used last"))
-    parser.add_argument(
+    option(parser, "model", "a model file, or the name of a bundled model", nargs="?")
+    option(parser, "--record FILE", "record the session to this file, for: pinjoint play FILE", writable)
+    option(parser, "--theme", "the colours; default: those used last", choices=theme_names())
+    option(
+        parser,
         "--version",
+        "show program's version number and exit",
         action="version",
         version=f"pinjoint {__version__}",
-        help=tr("show program's version number and exit"),
     )
     options = parser.parse_args(words)
     source = options.model or script.NEW

@@ -30,7 +30,7 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
     --mods did not name. Raises ModError; also for a mod that --mods names and that cannot be used, where a command
     would compute without it.
     """
-    parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
+    parser = Parser(add_help=False, allow_abbrev=False)
     parser.add_argument("--mods", action="append", default=[], metavar="DIR")
     parser.add_argument("--no-mods", action="store_true")
     options, others = parser.parse_known_args(list(words))

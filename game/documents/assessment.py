@@ -17,7 +17,7 @@ from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.statics.events import Event
 
-if TYPE_CHECKING:  # they import scipy
+if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.run.measured_error import MeasuredError
     from pinjoint.systems.statics.theory import Indeterminacy
     from pinjoint.systems.statics.verify import Comparison, Theories

@@ -22,7 +22,7 @@ from pinjoint.components.wording import cut
 from pinjoint.documents.assessment import LARGEST
 from pinjoint.systems.edit.arrows import extent
 
-if TYPE_CHECKING:  # it imports scipy
+if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.settle import Settlement
 
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as

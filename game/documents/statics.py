@@ -23,7 +23,7 @@ from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.components.view import Shape
 from pinjoint.documents.shapes import last_motion
 
-if TYPE_CHECKING:  # it imports scipy
+if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.second_order import SecondOrder
     from pinjoint.systems.statics.settle import Settlement
     from pinjoint.systems.statics.state import StaticState

@@ -30,7 +30,7 @@ from pinjoint.systems.edit.picking import PARTICLE_REACH
 from pinjoint.systems.edit.rods import share_at
 from pinjoint.systems.statics.counting import Count
 
-if TYPE_CHECKING:  # it imports scipy
+if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.verify import Comparison, Theories
 
 BESIDE = marked("Theory beside the run")  # the title of a panel

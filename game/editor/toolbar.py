@@ -40,12 +40,12 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
 def toolbar_of(context: Context) -> Toolbar:
     """The buttons of the active scene; those whose keys would do nothing now are not enabled."""
     groups = (
-        tuple(filter(None, (tool(context, name) for name in group))) for group in actions_of_toolbar(context)
+        tuple(filter(None, (tool(context, name) for name in group))) for group in _actions_of_toolbar(context)
     )
     return Toolbar(tuple(group for group in groups if group))
 
 
-def actions_of_toolbar(context: Context) -> list[list[str]]:
+def _actions_of_toolbar(context: Context) -> list[list[str]]:
     """The names of its actions, in groups; those of other scenes among them. None in forms."""
     if context.scenes.active.tools in FORMS:
         return []
@@ -87,7 +87,7 @@ def menu_at(context: Context, pixel: Vector) -> Menu:
     groups = _of_selection(context, pixel) if context.model.any_tagged(Selected) else _of_canvas(context)
     title = begun(heading(context.model, context.selected)) if context.model.any_tagged(Selected) else ""
     if context.scene == FORCE_METHOD:
-        groups, title = [[("pick unknown", marked("release this"))], *actions_of_toolbar(context)], ""
+        groups, title = [[("pick unknown", marked("release this"))], *_actions_of_toolbar(context)], ""
     entries = ([(entry, "") if isinstance(entry, str) else entry for entry in group] for group in groups)
     tools = (tuple(filter(None, (tool(context, *entry) for entry in group))) for group in entries)
     return Menu(title, tuple(group for group in tools if group), pixel, pointed=pixel)
@@ -168,5 +168,7 @@ def _of_canvas(context: Context) -> Groups:
     ]
     if context.view.strip.width == 0:
         known = {entry if isinstance(entry, str) else entry[0] for group in groups for entry in group}
-        groups += [[action for action in group if action not in known] for group in actions_of_toolbar(context)]
+        groups += [
+            [action for action in group if action not in known] for group in _actions_of_toolbar(context)
+        ]
     return groups

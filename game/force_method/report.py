@@ -57,20 +57,15 @@ def _title(model: Model) -> str:
 def contents(solved: Tables, convention: str, layout: Layout = LAYOUTS[0]) -> list[Flowable]:
     """What the report of a solution consists of, from the top to the bottom."""
     page = _Page(solved, layout)
+    theory = tr("Force method, by first-order theory: linear elastic, equilibrium about the original shape.")
     return [
         layout.text(_title(solved.model), "title"),
-        *(layout.text(line, "subtitle") for line in _conventions(solved)),
+        *(layout.text(line, "subtitle") for line in (theory, signs(solved.model))),
         *page.structure(),
         *(page.of_thesis() if convention == THESIS else page.working()),
         *page.forces(),
         *page.checks(),
     ]
-
-
-def _conventions(solved: Tables) -> Iterator[str]:
-    """The theory, and what is positive."""
-    yield tr("Force method, by first-order theory: linear elastic, equilibrium about the original shape.")
-    yield signs(solved.model)
 
 
 # --- figures -----------------------------------------------------------------------------------------

@@ -59,7 +59,7 @@ def histogram(speed: Array, mean_square: float) -> tuple[Array, Array]:
     return np.repeat(edges, 2), np.concatenate([[0.0], np.repeat(heights, 2), [0.0]])
 
 
-def is_gas(model: Model) -> bool:
+def _is_gas(model: Model) -> bool:
     """True for many free particles that nothing accelerates."""
     pulled = any(model.environment.acceleration) or model.particles.acceleration.any()
     return not pulled and not model.rods.count and int((~model.particles.fixed.all(axis=1)).sum()) >= MANY
@@ -67,7 +67,7 @@ def is_gas(model: Model) -> bool:
 
 def toggle_speeds(session: Context, pixel: Vector) -> None:
     """Show or hide the speeds of the particles."""
-    shown = _asked[session] = not _asked.get(session, is_gas(session.model))
+    shown = _asked[session] = not _asked.get(session, _is_gas(session.model))
     if not shown:
         session.notice = tr("The speeds of particles are hidden.")
     elif free_speeds(session.model).any():
@@ -81,7 +81,7 @@ def panels(session: Context) -> Sequence[Readout]:
     made = []
     if session.model.clock.collisions:
         made.append(Readout(tr("Impacts"), ((tr("so far"), str(session.model.clock.collisions)),)))
-    if _asked.get(session, is_gas(session.model)):
+    if _asked.get(session, _is_gas(session.model)):
         speed = free_speeds(session.model)
         mean_square = float((speed**2).mean()) if len(speed) else 0.0
         if mean_square > 0.0:

@@ -17,7 +17,7 @@ from typing import TextIO
 import numpy as np
 
 from pinjoint.components import FieldError, HistoryKind, Load, Model, Vector
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import marked
 from pinjoint.components.load import History
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import quoted
@@ -27,7 +27,7 @@ STANDARD_GRAVITY = 9.80665  # m/s²
 DIRECTIONS = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
 
 
-def check_positive(parameter: str, unit: str, history: History, where: str) -> None:
+def _check_positive(parameter: str, unit: str, history: History, where: str) -> None:
     """Raise FieldError unless a parameter is above 0."""
     if not history[parameter] > 0.0:
         raise FieldError(
@@ -39,7 +39,7 @@ def check_positive(parameter: str, unit: str, history: History, where: str) -> N
         )
 
 
-def check_points(history: History, where: str) -> None:
+def _check_points(history: History, where: str) -> None:
     """Raise FieldError unless there is one value for each time and times ascend."""
     times, values = (history[name] for name in list(history)[1:])
     if not times or len(times) != len(values):
@@ -62,7 +62,7 @@ SINE = HistoryKind(
     f"{KERNELS}:sine",
     static=0.0,
     ends=lambda history: math.inf,
-    check=partial(check_positive, "frequency", "Hz"),
+    check=partial(_check_positive, "frequency", "Hz"),
 )
 PULSE = HistoryKind(
     "pulse",
@@ -70,7 +70,7 @@ PULSE = HistoryKind(
     f"{KERNELS}:pulse",
     static=0.0,
     ends=lambda history: float(history["start"] + history["duration"]),
-    check=partial(check_positive, "duration", "s"),
+    check=partial(_check_positive, "duration", "s"),
     breaks=lambda history: (history["start"], history["start"] + history["duration"]),
 )
 TABLE = HistoryKind(
@@ -79,7 +79,7 @@ TABLE = HistoryKind(
     f"{KERNELS}:interpolated",
     static=lambda history: float(history["factors"][-1]),
     ends=lambda history: float(history["times"][-1]),
-    check=check_points,
+    check=_check_points,
     breaks=lambda history: tuple(history["times"]),
 )
 RECORD = replace(TABLE, name="record", parameters={"times": (0.0,), "accelerations": (0.0,)}, static=0.0)
@@ -145,20 +145,16 @@ def shake(model: Model, record: History | dict[str, list[float] | str], directio
 
 def run(words: list[str]) -> int:
     """`pinjoint shake MODEL RECORD.csv --output FILE`."""
-    from pinjoint.commands.arguments import Parser, UsageError
+    from pinjoint.commands.arguments import Parser, UsageError, option
     from pinjoint.commands.output import writable
     from pinjoint.documents import models
 
-    parser = Parser(
-        prog="pinjoint shake", description=tr("Shake the supports of a model by a recorded acceleration.")
-    )
-    parser.add_argument("model", help=tr("a model file, or the name of a bundled model"))
-    parser.add_argument("record", type=Path, metavar="RECORD.csv", help=tr("lines of time (s), acceleration"))
-    parser.add_argument("--unit", choices=("m/s2", "g"), default="m/s2", help=tr("of the accelerations"))
+    parser = Parser("shake", "Shake the supports of a model by a recorded acceleration.")
+    option(parser, "model", "a model file, or the name of a bundled model")
+    option(parser, "record RECORD.csv", "lines of time (s), acceleration", Path)
+    option(parser, "--unit", "of the accelerations", choices=("m/s2", "g"), default="m/s2")
     parser.add_argument("--direction", choices=tuple(DIRECTIONS), default="x")
-    parser.add_argument(
-        "--output", type=writable, required=True, metavar="FILE", help=tr("the model with the loads")
-    )
+    option(parser, "--output FILE", "the model with the loads", writable, required=True)
     options = parser.parse_args(words)
     model = models.load(options.model)
     try:

@@ -286,22 +286,17 @@ def _heading(probe: Probe) -> str:
 
 def run(words: list[str]) -> int:
     """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
-    from pinjoint.commands.arguments import Parser, UsageError, count, positive
+    from pinjoint.commands.arguments import Parser, UsageError, count, option, positive
     from pinjoint.commands.options import add_model, headless_of
     from pinjoint.commands.output import writable, writing
 
-    parser = Parser(
-        prog="pinjoint plot",
-        description=tr("Run a model and write quantities against time or another quantity."),
-    )
+    parser = Parser("plot", "Run a model and write quantities against time or another quantity.")
     add_model(parser)
-    parser.add_argument(
-        "--of", action="append", required=True, metavar="PATH", help=tr("such as rods.AB.axial_force")
-    )
-    parser.add_argument("--against", default=TIME, metavar="PATH", help=tr("default: time"))
-    parser.add_argument("--until", type=positive, required=True, metavar="T", help=tr("simulated time (s)"))
-    parser.add_argument("--samples", type=count, default=500, metavar="N", help=tr("at least; default 500"))
-    parser.add_argument("--output", type=writable, required=True, metavar="FILE", help=tr(".csv or .png"))
+    option(parser, "--of PATH", "such as rods.AB.axial_force", action="append", required=True)
+    option(parser, "--against PATH", "default: time", default=TIME)
+    option(parser, "--until T", "simulated time (s)", positive, required=True)
+    option(parser, "--samples N", "at least; default 500", count, default=500)
+    option(parser, "--output FILE", ".csv or .png", writable, required=True)
     options = parser.parse_args(words)
     session = headless_of(options)
     probe = probes_of(session).add(session, options.of, options.against)

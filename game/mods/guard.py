@@ -87,7 +87,7 @@ class Guard:
             raise ModError(
                 "{name} is not a System; derive it from a class in pinjoint.systems.base.", name=name
             )
-        check_declarations(made, role)
+        _check_declarations(made, role)
         made.mod, own = self.mod, vars(made)
         what, process = tr("the system '{name}'", name=made.name), made.process
         if isinstance(made, Law):  # finite, for each particle
@@ -104,7 +104,7 @@ class Guard:
         own["needs"] = lambda model: needs(model) and not self.mod.off
 
         def frame_kept(frame: Any) -> object:
-            with view_kept(frame.session):
+            with _view_kept(frame.session):
                 return process(frame)
 
         if not isinstance(made, StepSystem):
@@ -128,7 +128,7 @@ class Guard:
                 if self.mod.included:
                     change()
                 else:
-                    interruptible(change, model)
+                    _interruptible(change, model)
                     for table in (model.tables[name] for name in tables):  # such as NaN, which no Field takes
                         for field in table.fields_in(Role.STATE):
                             if field.dtype is not object:
@@ -177,7 +177,7 @@ class Guard:
             size: float | None = self.mod.call(what, checked, frequency, decay)
             return VelocityVerlet.stable_step(frequency, decay) if size is None else size
 
-        check_declarations(integrator, Integrator)
+        _check_declarations(integrator, Integrator)
         vars(integrator).update(mod=self.mod, stable_step=stable_step)
         return integrator
 
@@ -230,8 +230,8 @@ class Guard:
 
         def changed(context: Context, pixel: Vector) -> None:
             model = context.model
-            with model.transaction(name, shows_state=False), view_kept(context):
-                interruptible(lambda: function(context, pixel), model)
+            with model.transaction(name, shows_state=False), _view_kept(context):
+                _interruptible(lambda: function(context, pixel), model)
 
         return act
 
@@ -280,7 +280,7 @@ class Guard:
 
         Where a method of it fails, that of all scenes (`usual`) takes its place; what cannot be shown is empty.
         """
-        check_declarations(kind, usual)
+        _check_declarations(kind, usual)
         methods = {name for name, method in vars(usual).items() if callable(method) and name[0] != "_"}
         kind()  # raises here what it would raise in every session
         what = tr("the scene '{name}'", name=kind.name)
@@ -318,7 +318,7 @@ class Guard:
 # --- what is looked at ---------------------------------------------------------------------------------------
 
 
-def check_declarations(made: Any, role: type) -> None:
+def _check_declarations(made: Any, role: type) -> None:
     """Raise ModError or TypeError if class attributes are not of the types that the role declares."""
     for name, hint in get_type_hints(role).items():
         if get_origin(hint) is ClassVar:
@@ -329,13 +329,13 @@ def check_declarations(made: Any, role: type) -> None:
 
 
 @contextmanager
-def view_kept(context: Context) -> Iterator[None]:
+def _view_kept(context: Context) -> Iterator[None]:
     """Put the view and the notice back if the body raises, or leaves in them what cannot be shown."""
     view, notice = context.view, context.notice
     attributes, camera = dict(vars(view)), copy(view.camera)
     try:
         yield
-        check_view(context.view, attributes if context.view is view else {})
+        _check_view(context.view, attributes if context.view is view else {})
         check(context.notice, str, tr("the session's notice"))
     except BaseException:
         vars(view).update(attributes, camera=camera)
@@ -343,7 +343,7 @@ def view_kept(context: Context) -> Iterator[None]:
         raise
 
 
-def check_view(view: View, shown: Mapping[str, Any]) -> None:
+def _check_view(view: View, shown: Mapping[str, Any]) -> None:
     """Raise TypeError or ValueError if a view holds what cannot be shown, beside what it showed before."""
     check_fields(view, View, shown)
     numbers = (*view.camera.centre, view.camera.scale, view.pixel_ratio)
@@ -355,7 +355,7 @@ def check_view(view: View, shown: Mapping[str, Any]) -> None:
         )
 
 
-def interruptible(change: Callable[[], object], model: Model) -> None:
+def _interruptible(change: Callable[[], object], model: Model) -> None:
     """Run what changes a model by commands, and restore entities that it deleted past the tables.
 
     A command is never interrupted; code that does nothing but give commands is stopped before the first one that is late.
@@ -409,5 +409,5 @@ def _shown(made: Any) -> Any:
         if isinstance(view, tuple):  # a stage
             _shown(view)
         elif isinstance(view, View):
-            check_view(view, {})
+            _check_view(view, {})
     return made

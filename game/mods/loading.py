@@ -36,9 +36,9 @@ def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list
 
     Returns all mods that were found, each with its `problem` if it was left out. Mods that are loaded stay.
     """
-    found = [mod for folder in folders for mod in in_folder(Path(folder))]
+    found = [mod for folder in folders for mod in _in_folder(Path(folder))]
     if installed:
-        found += [*in_folder(mods_folder()), *in_packages()]
+        found += [*_in_folder(mods_folder()), *_in_packages()]
     known: dict[Path | None, Mod] = {
         mod.folder: mod for mod in EXTENSIONS.mods if mod.loaded and mod.folder is not None
     }
@@ -235,7 +235,7 @@ def mods_folder() -> Path:
     return data_folder() / "mods"
 
 
-def in_folder(folder: Path) -> list[Mod]:
+def _in_folder(folder: Path) -> list[Mod]:
     """The mod that a folder is, or the mods in it, by name of their folders."""
     if (folder / MANIFEST).is_file():
         return [read_manifest(folder, str(folder))]
@@ -247,7 +247,7 @@ def in_folder(folder: Path) -> list[Mod]:
     return [read_manifest(made, str(made)) for made in inside if any((made / file).is_file() for file in files)]
 
 
-def in_packages() -> list[Mod]:
+def _in_packages() -> list[Mod]:
     """The mods of installed packages, by name."""
     files = (file for path in sys.path for file in Path(path).glob("*-info/entry_points.txt"))
     if not any(GROUP.encode() in file.read_bytes() for file in files):

@@ -61,10 +61,6 @@ def lessons(folder: str = TO_WATCH) -> list[str]:
     return [name.removesuffix(".jsonl") for name in names if name.endswith(".jsonl")]
 
 
-def _are_mods(value: object) -> bool:
-    return isinstance(value, dict) and all(isinstance(version, str) for version in value.values())
-
-
 def _found(source: str | Path) -> Path | Traversable:
     """The lesson of that name, or else a file."""
     for folder in (TO_WATCH, TO_DO):
@@ -113,7 +109,8 @@ class Script:
             raise self.error(
                 1, tr("model is {value}; write the name of a model, or a whole model.", value=value)
             )
-        if (mods := header.get("mods")) is not None and not _are_mods(mods):
+        mods = {} if header.get("mods") is None else header["mods"]
+        if not isinstance(mods, dict) or not all(isinstance(version, str) for version in mods.values()):
             form, value = '{"wind": "1.0"}', as_json(mods)
             said = tr("mods is {value}; write names and versions, such as {form}.", value=value, form=form)
             raise self.error(1, said)

@@ -73,10 +73,10 @@ class Results:
     def write(self, path: str | Path) -> None:
         """Write a .csv or .parquet file, as a whole or not at all. Raises SweepError, OSError."""
         check_output(path := Path(path))
-        replace(path, self._as_csv() if path.suffix == ".csv" else self._as_parquet())
-
-    def _as_csv(self) -> bytes:
-        return written.as_csv([self.columns, *zip(*self.columns.values(), strict=True)]).encode()
+        if path.suffix == ".csv":
+            replace(path, written.as_csv([self.columns, *zip(*self.columns.values(), strict=True)]).encode())
+        else:
+            replace(path, self._as_parquet())
 
     def _as_parquet(self) -> bytes:
         """Units are kept with each column."""
@@ -137,16 +137,13 @@ class Results:
     def _lines(self) -> dict[str, NDArray[np.intp]]:
         """The rows of each line, by its label: what else is varied, and the state where there are several."""
         others = [v.path for v in self.plan.variations[1:] if v.values]
-        others += [name for name in ("time", "load_factor") if self._several(name)]
+        asked = {"time": self.plan.analysis.times, "load_factor": self.plan.analysis.load_factors}
+        others += [name for name, values in asked.items() if values is not None and len(values) > 1]
         lines: dict[str, list[int]] = {}
         for row in np.flatnonzero(self.found).tolist():
             label = ", ".join(f"{name} {_short(self.columns[name][row])}" for name in others)
             lines.setdefault(label, []).append(row)
         return {label: np.array(rows) for label, rows in lines.items()}
-
-    def _several(self, name: str) -> bool:
-        asked = self.plan.analysis.times if name == "time" else self.plan.analysis.load_factors
-        return asked is not None and len(asked) > 1
 
 
 def _short(value: Any) -> str:

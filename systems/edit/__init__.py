@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from pinjoint.components.mistake import Explained
+from pinjoint.components.mistake import Mistake
 
 
-class Refusal(Explained, ValueError):
+class Refusal(Mistake, ValueError):
     """An edit that cannot be made: nothing was changed; the message is a sentence with the reason and the remedy."""
 
 

@@ -70,7 +70,7 @@ def join(model: Model, first: Particle, second: Particle, *, rigid: bool = False
             prescribed_rest_length=[distance(first, second) if moved else None],
             **(_like_members(model) if rigid else {}),
         )
-        masses_from_rods(model, [first, second])
+        _masses_from_rods(model, [first, second])
     return rod
 
 
@@ -139,11 +139,11 @@ def delete(model: Model, handles: Iterable[Handle]) -> None:
     ends = flags(model.rods.between[rods], model.particles.count)
     remaining = [model.particles[row] for row in np.flatnonzero(ends & ~particles).tolist()]
     with model.transaction(tr("delete")):
-        masses_from_rods(model, remaining)
+        _masses_from_rods(model, remaining)
         model.delete(doomed)
 
 
-def masses_from_rods(model: Model, particles: Sequence[Particle]) -> None:
+def _masses_from_rods(model: Model, particles: Sequence[Particle]) -> None:
     """Forget the masses that were prescribed for these particles."""
     given = ~np.isnan(model.particles.prescribed_mass[rows_of(model, particles)])
     model.assign(list(itertools.compress(particles, given.tolist())), "prescribed_mass", None)

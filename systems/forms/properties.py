@@ -77,7 +77,7 @@ def counted(noun: str, count: int) -> str:
     return plural("{count} {kind}", "{count} {kind}s", count, kind=tr(noun))
 
 
-def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
+def _subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
     """The selected elements by kind, the loads on a single particle, and the settings of all of a kind.
 
     Without any, the environment and the shown grid.
@@ -142,7 +142,7 @@ def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
 def boxes_of(model: Model, selected: Sequence[Handle]) -> list[Box]:
     """Their boxes: in each section alphabetical by title in English, so that Tab goes on alike; vectors as two, x and y."""
     found: list[Box] = []
-    for subject in subjects(model, selected):
+    for subject in _subjects(model, selected):
         boxes = (box for field in subject.fields for box in _boxes(model, subject, field))
         found += sorted(boxes, key=lambda box: box.title.casefold())
     return found
@@ -181,7 +181,7 @@ def _history_boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterato
     yield replace(_box(subject, field, KIND, (history[KIND], ""), WORD, tuple(HISTORIES)), title=field.title)
     for name, value in history.items():
         if isinstance(value, float):
-            yield _box(subject, field, name, (written_number(value, 1.0), ""), NUMBER)
+            yield _box(subject, field, name, (_written_number(value, 1.0), ""), NUMBER)
 
 
 def _box(
@@ -242,10 +242,10 @@ def _written(field: Field[Any], value: Any) -> str:
         return YES_NO[int(value)]
     if field.dtype is str:
         return str(value)
-    return written_number(float(value), field.shown[1])
+    return _written_number(float(value), field.shown[1])
 
 
-def written_number(value: float, factor: float) -> str:
+def _written_number(value: float, factor: float) -> str:
     """A number times the factor of its unit on screen."""
     shown = float(Decimal(repr(value)) * Decimal(repr(factor))) + 0.0
     exact = f"{shown:.{EXACT}g}"

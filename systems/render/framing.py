@@ -51,7 +51,7 @@ def framed(mark: Mark, viewport: Viewport, unit: float) -> Iterator[Mark]:
 
     Raises ValueError if its arrays have other shapes than they should, or a number, colour or symbol is none.
     """
-    check_mark(mark)
+    _check_mark(mark)
     low, high = viewport.corners
     match mark:
         case Strokes():
@@ -77,7 +77,7 @@ def framed(mark: Mark, viewport: Viewport, unit: float) -> Iterator[Mark]:
 # --- checks ------------------------------------------------------------------------------------------------
 
 
-def check_mark(mark: Mark) -> None:
+def _check_mark(mark: Mark) -> None:
     """Raise ValueError, naming the part, if a mark of the right types cannot be drawn."""
     kind, arrays = type(mark), [*_SHAPES.get(type(mark), {})]
     names = getattr(mark, "_fields", None) or [*vars(mark)]

@@ -10,7 +10,7 @@ from scipy.linalg import qr
 
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import marked
-from pinjoint.components.mistake import Explained
+from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends, rigid_joints
@@ -24,7 +24,7 @@ _FIRST = 1e-3  # of bending moments, which are released before bars
 _RANK = 1e-9  # relative size below which a pivot is zero
 
 
-class ForceMethodError(Explained, ValueError):
+class ForceMethodError(Mistake, ValueError):
     """A static unknown that cannot be used; the message names it, the reason and the remedy.
 
     motion: of the mechanism that its release would leave, (n, 2 or 3), the largest 1; None for other reasons.

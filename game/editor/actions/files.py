@@ -5,7 +5,6 @@ from __future__ import annotations
 from pinjoint.components.field import Vector
 from pinjoint.components.language import tr
 from pinjoint.components.settings import HUBS, STATICS
-from pinjoint.documents.models import ModelError
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.context import Context
 from pinjoint.scripts.script import NEW
@@ -34,10 +33,7 @@ def _save_again(context: Context, pixel: Vector) -> None:
             " another name.",
             file=file.name,
         )
-    try:
-        context.notice = context.document.save_as(file.path)
-    except ModelError as error:
-        context.notice = str(error)
+    context.notice = context.document.save_as(file.path)
 
 
 action("load", "d", "open a model", HUBS)(lambda context, pixel: context.scenes.request_from_pause("load"))
@@ -56,13 +52,8 @@ def _sheet(context: Context, pixel: Vector) -> None:
     """Write the static solution of the model, from its undeformed beginning, to a PDF in the working folder."""
     if context.window is None:
         return
-    from pinjoint.sheet import NoSheet, sheet  # it imports reportlab
+    from pinjoint.sheet import sheet  # it imports reportlab
 
-    try:
-        with saving():
-            path = context.window.save(
-                "pinjoint-sheet.pdf", sheet(context.model, context.model.settings.theory)
-            )
-    except NoSheet as error:
-        raise Refusal(str(error)) from None
+    with saving():
+        path = context.window.save("pinjoint-sheet.pdf", sheet(context.model, context.model.settings.theory))
     context.notice = tr("Sheet saved: {file}", file=path)

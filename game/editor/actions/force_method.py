@@ -13,7 +13,7 @@ from pinjoint.editor.actions.results import shows_diagrams
 from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.force_method import ForceMethod
 from pinjoint.force_method import PARTS
-from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit import Refusal, saving
 from pinjoint.systems.edit.picking import pick
 from pinjoint.systems.input.actions import FORCE_METHOD, Condition, Perform, actions_of
 
@@ -123,13 +123,8 @@ def _report(context: Context, pixel: Vector) -> None:
         return
     from pinjoint.force_method.report import report  # it imports reportlab
 
-    try:
+    with saving():
         path = context.window.save("pinjoint-force-method.pdf", report(guide.tables, context.view.convention))
-    except OSError as error:
-        reason = {"file": error.filename, "reason": error.strerror}
-        raise Refusal(
-            "No report was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.", **reason
-        ) from None
     context.notice = tr("Report saved: {file}", file=path)
 
 

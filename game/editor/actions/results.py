@@ -16,7 +16,6 @@ from pinjoint.components.rod import Rod, has_strength
 from pinjoint.components.settings import DIAGRAMS, HUBS, PAUSE, STATICS
 from pinjoint.components.tags import DiagramShown, Selected
 from pinjoint.components.theory import EXACT, FIRST_ORDER
-from pinjoint.documents.shapes import NoShape
 from pinjoint.editor.actions.view import toggle
 from pinjoint.editor.context import Context
 from pinjoint.editor.sliders import add_slider
@@ -169,13 +168,9 @@ def _next_shape(context: Context, pixel: Vector) -> None:
     """Show the next mechanism, buckling mode or natural mode; after the last, none."""
     if context.view.put_together() and context.view.shape is not None:
         return
-    try:
-        context.document.shapes.next()
-        shown = context.document.shapes.shown
-        context.notice = shown.note if shown is not None else ""
-    except NoShape as error:
-        raise Refusal(str(error)) from None
-    context.view.shape = context.document.shapes.shown
+    context.document.shapes.next()
+    context.view.shape = shown = context.document.shapes.shown
+    context.notice = shown.note if shown is not None else ""
 
 
 @action("new slider", "ctrl+l", "add a slider for selected load or stiffness", while_drawing=False)

@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
-
 from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, tr
 from pinjoint.editor.context import Context
-from pinjoint.editor.listing import Lister
 from pinjoint.systems.edit import saving
 from pinjoint.systems.input.actions import TABLE, actions_of
 from pinjoint.systems.render.ui.listing import PRESSED
 
 action = actions_of("Results", (TABLE,), while_drawing=True)
-
-
-def _do(act: Callable[[Lister], object], context: Context, pixel: Vector) -> None:
-    act(context.lister)
 
 
 for _name, _key, _title, _act in (
@@ -32,7 +24,7 @@ for _name, _key, _title, _act in (
     ("table up", "", "", lambda lister: lister.scroll(-3)),
     ("table down", "", "", lambda lister: lister.scroll(3)),
 ):
-    action(_name, _key or (), _title, repeats=True)(partial(_do, _act))
+    action(_name, _key or (), _title, repeats=True)(lambda context, pixel, act=_act: act(context.lister))
 
 
 @action(PRESSED)

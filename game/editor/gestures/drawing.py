@@ -63,7 +63,7 @@ class Drawing(Gesture):
             return self.origin
         if not self.origin.exists:
             raise Refusal("The particle where this began has been deleted; begin at another one.")
-        return drawn_at(context, self.origin)
+        return _drawn_at(context, self.origin)
 
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; where that is refused, the drawing goes on."""
@@ -148,14 +148,14 @@ class DrawRod(Drawing):
         other = pick_particle(context.model, context.view, pixel)
         if other is None or other is self.origin or not isinstance(self.origin, Particle):
             point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
-            end = point if other is None else drawn_at(context, other)
+            end = point if other is None else _drawn_at(context, other)
             return Preview("rod", start, end, written.length(math.dist(start, end), 3))
         try:
             check_ends(context.model, self.origin, other)
             label = written.length(distance(self.origin, other), written.DIGITS)
         except Refusal:
             label = tr("joined already")
-        return Preview("rod", start, drawn_at(context, other), label)
+        return Preview("rod", start, _drawn_at(context, other), label)
 
 
 class DrawArrow(Drawing):
@@ -332,7 +332,7 @@ def _length_and_angle(start: Vector, end: Vector) -> str:
     return f"{written.length(math.dist(start, end), written.DIGITS)}, {written.given(angle, 4)}°"
 
 
-def drawn_at(context: Context, particle: Particle) -> Vector:
+def _drawn_at(context: Context, particle: Particle) -> Vector:
     """Where a particle is drawn (m)."""
     x, y = drawn_positions(context.model)[particle.row].tolist()
     return x, y

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from pinjoint.components import written
-from pinjoint.components.field import FieldError, Vector
+from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, marked, tr
+from pinjoint.components.mistake import Mistake
 from pinjoint.components.particle import Particle
 from pinjoint.components.view import Preview, drawn_positions
 from pinjoint.editor.context import Context, Gesture
@@ -35,7 +36,7 @@ class Placing(Gesture):
         try:
             with context.document.history.as_one(self):
                 context.notice = self.place(context, pixel) or context.notice
-        except (Refusal, FieldError) as error:
+        except Mistake as error:
             context.notice = str(error)
 
     def drop(self, context: Context, pixel: Vector) -> None:
