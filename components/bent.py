@@ -27,7 +27,7 @@ Rows = NDArray[np.intp]
 
 AXIAL, MOMENT, SHEAR = DIAGRAMS
 FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn of it
-MOST_PIECES = 32  # of a drawn rod
+_MOST_PIECES = 32  # of a drawn rod
 _LARGEST = 1e6  # pieces that a rod would have to be cut into; such are left out
 _STEEP, _STEEPEST = 0.05, 2.5  # rad, slopes from which on tangents are drawn truly, and up to which
 # Between which a zero of a polynomial is looked for, and the shares that are one to it.
@@ -133,7 +133,7 @@ class Axes:
         curved = np.flatnonzero((wanted > 1.0) & (wanted < _LARGEST))
         if not len(curved):
             return None
-        least = np.array([2, 4, 8, 16, MOST_PIECES])
+        least = np.array([2, 4, 8, 16, _MOST_PIECES])
         count = least[np.minimum(np.searchsorted(least, wanted[curved]), len(least) - 1)]
         starts, ends, of = [], [], []
         for number in np.unique(count).tolist():

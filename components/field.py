@@ -245,12 +245,15 @@ class Field(Generic[T]):
         if self.dtype is not float and ((number := int(value)) != value or number.bit_length() > 63):
             message = marked("{where}: {title} is {value}; it must be a whole number below 2^63.")
             raise self._refusal(message, where, value, axis)
-        limit = self.limit_broken_by(number)
-        if limit:
+        self.check_limits(number, where, axis)
+        return number
+
+    def check_limits(self, number: float, where: str, axis: str = "") -> None:
+        """Raise FieldError if a number, of the part along an axis if it has any, breaks a limit."""
+        if limit := self.limit_broken_by(number):
             amount = joined([decimals(f"{number:.15g}"), self.unit])
             message = marked("{where}: {title} is {amount}; it must be {limit}.")
             raise self._refusal(message, where, number, axis, amount=amount, limit=limit)
-        return number
 
     def limit_broken_by(self, number: float, *, shown: bool = False) -> str | None:
         """The limit that a number breaks, in words (in the unit on screen if `shown`), or None."""

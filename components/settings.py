@@ -18,7 +18,7 @@ DIAGRAMS = ("N", "M", "V")
 INTEGRATORS = ChainMap(EXTENSIONS.integrators, {AUTOMATIC: None})  # the names of all there are at any time
 # The scenes from which a person edits, and in which a model may open.
 PAUSE, STATICS = HUBS = ("pause", "statics")
-MOST_LOAD_STEPS = 100
+_MOST_LOAD_STEPS = 100
 
 
 def _check_load_steps(value: Any, where: str) -> tuple[float, ...]:
@@ -26,7 +26,7 @@ def _check_load_steps(value: Any, where: str) -> tuple[float, ...]:
     steps = value.tolist() if hasattr(value, "tolist") else value
     if (
         isinstance(steps, list | tuple)
-        and 0 < len(steps) <= MOST_LOAD_STEPS
+        and 0 < len(steps) <= _MOST_LOAD_STEPS
         and all(isinstance(s, int | float) and not isinstance(s, bool) and abs(s) <= LARGEST for s in steps)
     ):
         return tuple(map(float, steps))
@@ -34,7 +34,7 @@ def _check_load_steps(value: Any, where: str) -> tuple[float, ...]:
         "{where}: load steps are {value}; give a list of one to {most} load factors, such as [1] or [1, 0].",
         where=where,
         value=quoted(value),
-        most=MOST_LOAD_STEPS,
+        most=_MOST_LOAD_STEPS,
     )
 
 

@@ -16,7 +16,7 @@ from pinjoint.components.field import CM
 from pinjoint.components.language import decimals, english, joined, several, tr
 
 DIGITS = 4  # significant ones of a result
-GIVEN_DIGITS = 6  # of a number that a person set, without zeros at its end
+_GIVEN_DIGITS = 6  # of a number that a person set, without zeros at its end
 MORE_DIGITS = 2  # that a sum may take so that it adds up as written
 ROUNDING = 1e-9  # of the largest of its kind: a result below is written as 0
 
@@ -71,7 +71,7 @@ def _number(value: float, digits: int, nothing: float = 0.0) -> str:
     return f"{mantissa}·10{str(power).translate(_RAISED)}".replace("-", "−")
 
 
-def given(value: float, digits: int = GIVEN_DIGITS) -> str:
+def given(value: float, digits: int = _GIVEN_DIGITS) -> str:
     """A number that a person set, or a round one, as short as it is: "0.5"."""
     head, dot, power = _number(value, digits).partition("·")
     return decimals((head.rstrip("0").rstrip(".") if "." in head else head) + dot + power)
@@ -96,17 +96,17 @@ def displacement(metres: float, *, nothing: float = 0.0) -> str:
     return _with_unit(number(_PER_METRE * metres, nothing=_PER_METRE * nothing), _LENGTH)
 
 
-def length(metres: float, digits: int = GIVEN_DIGITS) -> str:
+def length(metres: float, digits: int = _GIVEN_DIGITS) -> str:
     """A length that a person set."""
     return _with_unit(given(_PER_METRE * metres, digits), _LENGTH)
 
 
-def place(metres: Iterable[float], digits: int = GIVEN_DIGITS) -> str:
+def place(metres: Iterable[float], digits: int = _GIVEN_DIGITS) -> str:
     """A point of the plane."""
     return _with_unit(vector((_PER_METRE * part for part in metres), digits), _LENGTH)
 
 
-def vector(values: Iterable[float], digits: int = GIVEN_DIGITS) -> str:
+def vector(values: Iterable[float], digits: int = _GIVEN_DIGITS) -> str:
     """The two parts of what a person set: "(120, −160)"."""
     return joined(("(", several(given(value, digits) for value in values), ")"), "")
 

@@ -42,7 +42,7 @@ UNITS = {unit.name: unit for unit in (RASTER, PARTING, EVENTS, HORIZONS, PILES, 
 # Of `python -P -c`.
 START = "import sys; sys.path[:] = sys.argv[1:]; from pinjoint.elsewhere import main; main()"
 INTERVAL = 0.05  # s between two looks
-ENDING = 0.5  # s that what a thread is at may take before the window goes without it
+_ENDING = 0.5  # s that what a thread is at may take before the window goes without it
 
 _HOME = Path(__file__).parent
 
@@ -111,7 +111,7 @@ class Elsewhere:
         """Let go of what is still being compiled."""
         self._closed.set()
         if self._thread.ident is not None:
-            self._thread.join(ENDING)
+            self._thread.join(_ENDING)
         if self._process is not None and self._process.poll() is None:
             self._end(self._process)
 

@@ -16,7 +16,7 @@ from pinjoint.components.mistake import Mistake
 from pinjoint.streams import put
 
 BAD_INPUT = 2
-OUTPUTS = ("output", "events", "report", "record", "plot")  # options of all commands that name a file to write
+_OUTPUTS = ("output", "events", "report", "record", "plot")  # options of all commands that name a file to write
 
 
 class UsageError(Mistake):
@@ -28,7 +28,7 @@ class UsageError(Mistake):
 
 
 argparse._ = tr  # type: ignore[attr-defined]  # what it looks its own words up with; these are:
-OF_ARGPARSE = (
+_OF_ARGPARSE = (
     marked("usage: "),
     marked("positional arguments"),
     marked("options"),
@@ -67,7 +67,7 @@ class Parser(argparse.ArgumentParser):
         """Raise UsageError if a file that options write is one that they, or others of these names, read."""
         files = [(name, path) for name, value in options.items() for path in _paths(value)]
         for (name, path), (other, same) in itertools.permutations(files, 2):
-            if name in OUTPUTS and (other not in OUTPUTS or name < other) and _is_one_file(path, same):
+            if name in _OUTPUTS and (other not in _OUTPUTS or name < other) and _is_one_file(path, same):
                 self.error(
                     tr(
                         "--{option} {file} is {other} itself, which would be lost; choose another file",

@@ -20,7 +20,7 @@ NAMES = (
     *("speed", "accuracy", "stability", "drawing", "editing"),
     *("mods", "collisions", "sweeps", "start", "differential"),
 )
-NUMBERED = "differential"  # the one whose models have numbers
+_NUMBERED = "differential"  # the one whose models have numbers
 
 Tables = Mapping[str, Sequence[Mapping[str, Any]]]  # rows by the title of their table
 
@@ -46,10 +46,10 @@ def command(words: Sequence[str]) -> int:
             raise UsageError(
                 "There is no benchmark '{name}'; choose from {names}.", name=name, names=", ".join(NAMES)
             )
-    if options.seed is not None and (options.names != [NUMBERED] or options.seed < 0):
+    if options.seed is not None and (options.names != [_NUMBERED] or options.seed < 0):
         raise UsageError(
             "--seed takes a whole number of at least 0 and works with one benchmark only: {name}.",
-            name=NUMBERED,
+            name=_NUMBERED,
         )
     chosen = {"quick": options.quick} | ({} if options.seed is None else {"seed": options.seed})
     measured: dict[str, Tables] = {}

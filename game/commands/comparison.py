@@ -26,7 +26,7 @@ from pinjoint.systems.statics.vibration import Vibrations
 VERIFIED, NOT_VERIFIED = marked("verified"), marked("not verified")
 LEFT_OUT = marked("left out")  # of a simulation
 MOST_WORK = 200_000  # steps × elements of a simulation that nobody asked for: some seconds, interpreted
-PORTIONS = 10  # in which they are taken
+_PORTIONS = 10  # in which they are taken
 SHOWN = 6  # mechanisms and frequencies in a table
 _IN_TABLES = {"m": ("mm", 1000.0)}  # else units as in files
 _ANSWERS = {
@@ -86,8 +86,8 @@ def _run_to_rest(session: Headless, limit: float | None) -> str:
     """The status of a run until at rest, or LEFT_OUT."""
     if limit is not None:
         return session.run(until="rest", limit=limit)
-    steps = MOST_WORK // PORTIONS // (session.model.particles.count + session.model.rods.count) + 1
-    for _ in range(PORTIONS):
+    steps = MOST_WORK // _PORTIONS // (session.model.particles.count + session.model.rods.count) + 1
+    for _ in range(_PORTIONS):
         status = session.run(steps=steps)
         if status != "time reached":
             return status

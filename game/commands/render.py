@@ -36,7 +36,7 @@ _LIGHT = 128  # of 255: themes with a darker background are not made for white p
 FRAME = 0.05  # s for which each picture is shown; viewers of GIFs slow down quicker ones
 LONGEST = 12.0  # s shown; a longer run to a time is shown faster, one until rest in part and at its end
 HELD = 1.5  # s for which the last picture stays
-COLOURS = 128
+_COLOURS = 128
 
 
 def command(words: Sequence[str]) -> int:
@@ -219,7 +219,7 @@ def _animate(session: Session, options: argparse.Namespace, size: tuple[int, int
     for moment in moments:
         moment.restore(session.model)
         image = Image.fromarray(pictures.frame(session, size, options.theme, around, placed))
-        images.append(image.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE))
+        images.append(image.quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE))
     durations = [round(1000 * FRAME)] * (len(images) - 1) + [round(1000 * HELD)]
     made = io.BytesIO()
     images[0].save(made, "GIF", save_all=True, append_images=images[1:], duration=durations, loop=0)

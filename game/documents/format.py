@@ -34,7 +34,7 @@ SECTIONS: Mapping[str, type[Handle]] = {
     "grids": Grid,
     "state": Clock,
 }
-REQUIRED: Mapping[str, tuple[str, ...]] = {
+_REQUIRED: Mapping[str, tuple[str, ...]] = {
     "particles": ("name", "position"),
     "rods": ("name", "between"),
     "loads": ("on",),
@@ -54,8 +54,8 @@ def fail(path: str, problem: str, /, **values: Any) -> NoReturn:
 
 def required(kind: type[Handle]) -> Sequence[str]:
     """The keys that every element of a kind must have."""
-    if kind.table in REQUIRED or kind not in EXTENSIONS.kinds.values():
-        return REQUIRED.get(kind.table, ())
+    if kind.table in _REQUIRED or kind not in EXTENSIONS.kinds.values():
+        return _REQUIRED.get(kind.table, ())
     return [field.key for field in fields_of(kind) if field.name in kind.points or field.references]
 
 

@@ -19,7 +19,7 @@ from pinjoint.components.mistake import Explained
 from pinjoint.documents import models
 
 DATA_VARIABLE = "PINJOINT_DATA"  # names another folder than the system's own
-LONGEST_NAME = 100  # characters
+_LONGEST_NAME = 100  # characters
 MOST_BYTES = 200  # in UTF-8; file systems take 255, with what is added to a name
 _KEPT_BY_WINDOWS = {
     "con",
@@ -74,9 +74,9 @@ def path_of(name: str) -> Path:
         raise NameRefused("A name cannot begin or end with a dot; remove it.")
     if name.partition(".")[0].rstrip().lower() in _KEPT_BY_WINDOWS:
         raise NameRefused("Windows cannot have files called '{name}'; choose another name.", name=name)
-    if len(name) > LONGEST_NAME:
+    if len(name) > _LONGEST_NAME:
         raise NameRefused(
-            "The name has {count} characters; use at most {most}.", count=len(name), most=LONGEST_NAME
+            "The name has {count} characters; use at most {most}.", count=len(name), most=_LONGEST_NAME
         )
     if len(name.encode()) > MOST_BYTES:
         raise NameRefused(

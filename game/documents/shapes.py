@@ -27,9 +27,9 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
 
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
 LOWEST = 10  # mechanisms, and modes, in the round of `next`
-LOWEST_BUCKLING = 3  # buckling modes in it
+_LOWEST_BUCKLING = 3  # buckling modes in it
 PERIOD = 2.4  # s, in which a shape swings to and fro
-LOWEST_OF_LARGE = 50  # modes of structures that are too large for all
+_LOWEST_OF_LARGE = 50  # modes of structures that are too large for all
 
 
 class NoShape(Mistake, LookupError):
@@ -93,7 +93,7 @@ def _first_ones(model: Model) -> list[Shape]:
     _check_range(model)
     found = mechanism_shapes(model, LOWEST)
     with suppress(NoShape):
-        found += buckling_shapes(model, LOWEST_BUCKLING, elastic=True)
+        found += buckling_shapes(model, _LOWEST_BUCKLING, elastic=True)
     found += mode_shapes(model, LOWEST)
     if not found:
         raise NoShape("There are no mechanisms and no modes, because no rod has an end that is free to move.")
@@ -176,7 +176,7 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     degrees = Indeterminacy.of(model)
     about = Start.present(model) if not model.first_order and rests_under_load(model) else None
     if most is None and degrees.mechanisms + degrees.rank > FULL:
-        most = LOWEST_OF_LARGE
+        most = _LOWEST_OF_LARGE
     found = Vibrations.of(model, about, count=None if most is None else degrees.mechanisms + most)
     still = degrees.mechanisms if about is None else int((found.angular_squared <= 0.0).sum())
     modes = list(zip(found.hertz[still:].tolist(), found.modes[still:], strict=True))

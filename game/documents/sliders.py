@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pinjoint.components.field import Field, FieldError
-from pinjoint.components.language import decimals, tr
+from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.slider import Aim, Slider
 from pinjoint.components.wording import cut, is_broken, quoted, remedy
-from pinjoint.documents.format import ModelError, fail
+from pinjoint.documents.format import fail
 from pinjoint.paths import EVERY, PathError, Target, locate, settable
 
 KEY = "sliders"
@@ -19,7 +19,7 @@ KEYS = ("of", "from", "to", "logarithmic", "title")
 
 
 def read_sliders(model: Model, entries: Any) -> tuple[Slider, ...]:
-    """The sliders that a document describes, of a model that has all elements. Raises ModelError."""
+    """The sliders that a document describes, of a model that has all elements. Raises ModelError, FieldError."""
     if not isinstance(entries, list | tuple):
         fail(f"$.{KEY}", "it is {value}; it must be a list.", value=quoted(entries))
     return tuple(_read(model, entry, f"$.{KEY}[{place}]") for place, entry in enumerate(entries))
@@ -87,15 +87,7 @@ def _end(value: Any, fields: tuple[Field[Any], ...], where: str) -> float:
     if not number:
         fail(where, "it is {value}; it must be a finite number.", value=quoted(value))
     for field in fields:
-        if problem := field.limit_broken_by(float(value)):
-            amount = decimals(f"{float(value):g}")
-            raise ModelError(
-                "{where}: {title} is {amount}; it must be {limit}.",
-                where=where,
-                title=field.named(),
-                amount=amount,
-                limit=problem,
-            )
+        field.check_limits(float(value), where)
     return float(value)
 
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.state import StaticState
 
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
-MOST_COMPARED = 300  # rods, up to which both theories take a moment only
+_MOST_COMPARED = 300  # rods, up to which both theories take a moment only
 REST = 0.2  # s without an edit, after which a window compares them
 LARGE = 1000  # rods, from which on a window solves what a hand moves once it lets go
 _CHOICES = "theory", "load_steps"  # of the settings
@@ -185,7 +185,7 @@ class Statics:
         another solution; None: at once.
         """
         settlement = self.settlement
-        if settlement is None or not settlement.final.balanced or self._model.rods.count > MOST_COMPARED:
+        if settlement is None or not settlement.final.balanced or self._model.rods.count > _MOST_COMPARED:
             return ""
         if elapsed is not None:
             self._rest = self.revision, self._rest[1] + elapsed if self._rest[0] == self.revision else 0.0

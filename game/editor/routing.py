@@ -13,7 +13,7 @@ from pinjoint.systems.render.ui.menu import pointed_at
 
 BUTTONS = ("click", "ctrl+click", "double click", "drag", "ctrl+drag", "right click")
 WHEEL = ("wheel up", "wheel down")
-AT_POINTER = (*BUTTONS, *WHEEL)
+_AT_POINTER = (*BUTTONS, *WHEEL)
 DIGITS = frozenset("0123456789.,-+")
 
 
@@ -29,7 +29,7 @@ class Press:
 
     def __init__(self, context: Context, key: str, pixel: Vector) -> None:
         self._context, self._key, self._pixel = context, key, pixel
-        self.hit = self._hit() if key in AT_POINTER else None
+        self.hit = self._hit() if key in _AT_POINTER else None
         self.for_tools = self._is_for_tools()
         self.action, self.at = self._meaning()
 
@@ -50,7 +50,7 @@ class Press:
     def _is_for_tools(self) -> bool:
         context = self._context
         view, scene = context.view, context.scenes.active
-        if self._key not in AT_POINTER or view.menu is not None or view.help or scene.covers(context):
+        if self._key not in _AT_POINTER or view.menu is not None or view.help or scene.covers(context):
             return False
         in_form = self._key == "right click" and context.scene in FORMS
         beside = in_form and not context.focus[1].covers(self._pixel)
@@ -67,7 +67,7 @@ class Press:
             return self._on(hit), hit.at or pixel
         if (
             view.menu is not None
-            and key not in AT_POINTER
+            and key not in _AT_POINTER
             and (action := ACTIONS.name_at(MENU, key)) is not None
         ):
             number = pointed_at(view, load_theme(view.theme), pixel) if key == "return" else -1
@@ -76,7 +76,7 @@ class Press:
         if view.help and key == "escape":
             return "close help", pixel
         scene = LIVE[0] if self.for_tools else self._context.scene
-        over = scene in LIVE and view.table_place.contains(pixel) and key not in AT_POINTER
+        over = scene in LIVE and view.table_place.contains(pixel) and key not in _AT_POINTER
         if over and (found := ACTIONS.name_at(TABLE, key)) is not None:
             return found, pixel
         found = ACTIONS.name_at(scene, key)

@@ -25,7 +25,7 @@ NAMES = (
     marked("Set 2: released, under load"),
     marked("Set 3: the unknown alone"),
 )
-TO_COME = ("", marked("follows in part 3"), marked("follows in part 5"))
+_TO_COME = ("", marked("follows in part 3"), marked("follows in part 5"))
 EXACT = 5  # significant digits of gaps and flexibilities, from which unknowns follow to 4
 
 
@@ -99,7 +99,7 @@ def captions(guide: Guide) -> list[Caption]:
         return [(tr(NAMES[0]),), (tr("A mechanism: nothing resists this motion"),), ("",)]
     there = len(guide.sets)
     shown: list[Caption] = [
-        (tr(name), *(() if i < there else (tr(TO_COME[i]) if TO_COME[i] else "",)))
+        (tr(name), *(() if i < there else (tr(_TO_COME[i]) if _TO_COME[i] else "",)))
         for i, name in enumerate(NAMES)
     ]
     solution = guide.solution

@@ -19,7 +19,7 @@ if TYPE_CHECKING:  # a command needs no editor
 
 MANY = 100  # particles without rods from which on their speeds are shown by default
 BINS = 16
-RANGE = 2.5  # times the root mean square speed, that the bars cover
+_RANGE = 2.5  # times the root mean square speed, that the bars cover
 
 ICON = (
     ("line", (-8.5, 8, 8.5, 8)),
@@ -53,7 +53,7 @@ def rayleigh(speed: Array, mean_square: float) -> Array:
 
 def histogram(speed: Array, mean_square: float) -> tuple[Array, Array]:
     """Outline of the bars of a histogram: speeds (m/s) and densities (s/m)."""
-    edges = np.linspace(0.0, RANGE * np.sqrt(mean_square), BINS + 1)
+    edges = np.linspace(0.0, _RANGE * np.sqrt(mean_square), BINS + 1)
     density, _ = np.histogram(np.minimum(speed, edges[-1]), edges)
     heights = density / (len(speed) * (edges[1] - edges[0]))
     return np.repeat(edges, 2), np.concatenate([[0.0], np.repeat(heights, 2), [0.0]])
@@ -90,7 +90,7 @@ def panels(session: Context) -> Sequence[Readout]:
 
 
 def _speeds(speed: Array, mean_square: float, revision: int) -> Readout:
-    smooth = np.linspace(0.0, RANGE * np.sqrt(mean_square), 80)
+    smooth = np.linspace(0.0, _RANGE * np.sqrt(mean_square), 80)
     curves = (
         (tr("particles"), *histogram(speed, mean_square)),
         (tr("Rayleigh"), smooth, rayleigh(smooth, mean_square)),

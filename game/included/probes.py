@@ -32,9 +32,9 @@ ENERGIES = {  # by path, as legends name them
     "energy.dissipated_damping": marked("damping"),
     "energy.dissipated_plastic": marked("yielding"),
 }
-OF_ROD = (("axial_force", TIME), ("axial_force", "strain"))
-OF_BENDING_ROD = (*((f"bending_moment.{end}", TIME) for end in ENDS), ("shear.start", TIME))
-OF_PARTICLE = (
+_OF_ROD = (("axial_force", TIME), ("axial_force", "strain"))
+_OF_BENDING_ROD = (*((f"bending_moment.{end}", TIME) for end in ENDS), ("shear.start", TIME))
+_OF_PARTICLE = (
     ("displacement.x", TIME),
     ("displacement.y", TIME),
     ("velocity.x", "displacement.x"),
@@ -180,9 +180,9 @@ def choices(session: Context) -> list[tuple[tuple[str, ...], str]]:
     """
     found: list[tuple[tuple[str, ...], str]] = []
     for handle in session.selected[-1:]:
-        pairs = OF_ROD if isinstance(handle, Rod) else OF_PARTICLE if isinstance(handle, Particle) else ()
+        pairs = _OF_ROD if isinstance(handle, Rod) else _OF_PARTICLE if isinstance(handle, Particle) else ()
         if isinstance(handle, Rod) and handle.bending_stiffness:
-            pairs = (*OF_BENDING_ROD, *pairs)
+            pairs = (*_OF_BENDING_ROD, *pairs)
         if isinstance(handle, Particle) and handle.inertia:
             pairs = (*pairs, ("rotation", TIME))
         start = f"{handle.table}.{getattr(handle, 'name', '')}."

@@ -47,7 +47,7 @@ PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
 _ROLES = (Law, Commit, Event, Integrator, StepSystem, System)
 _QUESTIONS = ("needs", "arrays", "leaves_flight_exact", "cutoff", "held_forces")  # that systems answer
 Panel = Callable[[Any], Readout | Sequence[Readout] | None]  # is given the context
-MOST_MARKS = 1_000_000  # of a layer: an iterator may have no end, in code that nothing interrupts
+_MOST_MARKS = 1_000_000  # of a layer: an iterator may have no end, in code that nothing interrupts
 _READ = {"heading": str, "message": str, "boxes": dict[str, str]}  # as attributes or properties
 
 
@@ -252,10 +252,10 @@ class Guard:
                 return list(draw(sheet))
             made = draw(replace(sheet, marks=list(sheet.marks), labels=[], legend=[], notes=[]))
             check(made, Iterable[Mark], called)
-            marks = list(islice(made, MOST_MARKS + 1))
-            if len(marks) > MOST_MARKS:
+            marks = list(islice(made, _MOST_MARKS + 1))
+            if len(marks) > _MOST_MARKS:
                 raise WrongValue(
-                    "{called} has more than {count:,} entries; give fewer", called=called, count=MOST_MARKS
+                    "{called} has more than {count:,} entries; give fewer", called=called, count=_MOST_MARKS
                 )
             for mark in marks:
                 check(mark, Mark, called)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:  # a command without a run does not need it
 
 LOG = logging.getLogger("pinjoint.mods")
 LOG.setLevel(logging.DEBUG)  # tracebacks are for those who listen, such as mods.log
-INCLUDED = "Pinjoint"  # the source of the mods that come with the program
+_INCLUDED = "Pinjoint"  # the source of the mods that come with the program
 MANIFEST = "mod.toml"
 LONGEST = 400  # characters of a text of a mod, such as what an error says
 PATIENCE = 10.0  # s that whatever a mod is asked may take, the compilation of functions of its own included
@@ -59,7 +59,7 @@ class Mod:
     description: str = ""
     requires: tuple[str, ...] = ()
     folder: Path | None = None
-    source: str = INCLUDED
+    source: str = _INCLUDED
     problem: str = ""
     notes: list[str] = field(default_factory=list)
     withdraw: Callable[[], None] | None = None  # takes everything back that it registered
@@ -67,7 +67,7 @@ class Mod:
     @property
     def included(self) -> bool:
         """True if it comes with the program."""
-        return self.source == INCLUDED
+        return self.source == _INCLUDED
 
     @property
     def off(self) -> bool:

@@ -23,11 +23,11 @@ from pinjoint.systems.physics.pace import natural_pace
 FOOTER = 112.0  # points, height of the strip for the words of a script below the picture
 LARGER = 1.25  # factor of the type in that strip
 RATE = 60.0  # pictures a second of a run
-BEAT = 0.7  # s between two actions
+_BEAT = 0.7  # s between two actions
 REACH = 0.4  # s of a movement of the pointer
 READING = 1.2, 0.055  # s that a sentence stays: at least, and for each character
 PATIENCE = 6.0  # s of a run shown at its natural pace, before it goes faster and faster
-HURRY = ("space", "return", "right", "click")
+_HURRY = ("space", "return", "right", "click")
 DONE = marked("This is the end. Go on from here as you like; Ctrl+Z goes back, step by step.")
 
 _UNSEEN = {"expect", "resize", "window"}  # verbs without a pause after them
@@ -149,7 +149,7 @@ class Performance:
             text = entry["say"]
             self._say(tr(text))
         elif not _UNSEEN & set(entry):
-            self._wait(BEAT if "input" not in entry else 0.1 * BEAT)
+            self._wait(_BEAT if "input" not in entry else 0.1 * _BEAT)
 
     def _say(self, text: str) -> None:
         footer = self._screen.session.footer
@@ -204,7 +204,7 @@ class Performance:
         pointer = screen.session.view.pointer
         pressed = [key for key, _ in screen.next_frame(wait=self._pace > 0.0).pressed]
         screen.session.view.pointer = pointer  # the mouse of the person does not count
-        self._hurried |= any(key in HURRY for key in pressed)
+        self._hurried |= any(key in _HURRY for key in pressed)
         self._ended |= "escape" in pressed or screen.closed
 
     def _grow(self, points: int) -> None:

@@ -21,7 +21,7 @@ from pinjoint.sweeps.variation import INSTALL, SweepError
 
 SUFFIXES = (".csv", ".parquet")
 _NEEDED = {".parquet": "pyarrow", ".png": "matplotlib"}
-MOST_PANELS = 12
+_MOST_PANELS = 12
 MOST_LINES = 12
 
 
@@ -110,7 +110,7 @@ class Results:
         matplotlib.use("Agg")
         from matplotlib import pyplot
 
-        measures = self.plan.measures[:MOST_PANELS]
+        measures = self.plan.measures[:_MOST_PANELS]
         drawn = any(variation.distribution for variation in self.plan.variations)
         figure, axes = pyplot.subplots(
             len(measures),

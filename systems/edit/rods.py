@@ -22,7 +22,7 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.placing import rows_of
 
 # What members have of their section and material.
-MADE_OF = (
+_MADE_OF = (
     *(Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment, Rod.thermal_expansion),
     *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.bending_damping, Rod.damping),
     *(Rod.density, Rod.tensile_strength, Rod.compressive_strength),
@@ -79,7 +79,7 @@ def _like_members(model: Model) -> dict[str, Any]:
     bent = np.flatnonzero(model.rods.bending_stiffness > 0.0)
     if not len(bent):
         return {"section": np.array([USUAL_SECTION], dtype=object)}
-    return {field.name: model.rods.column(field.name)[bent[-1:]] for field in MADE_OF}
+    return {field.name: model.rods.column(field.name)[bent[-1:]] for field in _MADE_OF}
 
 
 def share_at(rod: Rod, point: Vector) -> float:

@@ -25,7 +25,7 @@ SUPPORTS: dict[Held, tuple[str, str]] = {
     (True, False, True): ("guide x", marked("guided: held in x, cannot turn")),
     (False, False, True): ("hold rotation", marked("cannot turn, free in x and y")),
 }
-DIAGONAL = math.tan(math.pi / 8.0)  # tan 22.5°; a direction farther from an axis counts along both
+_DIAGONAL = math.tan(math.pi / 8.0)  # tan 22.5°; a direction farther from an axis counts along both
 
 
 def held(particle: Particle) -> Held:
@@ -51,4 +51,4 @@ def support(model: Model, particles: Sequence[Particle], wanted: Held) -> str:
 def support_towards(along: Vector) -> tuple[bool, bool]:
     """The directions that a ground at that side holds: y below or above, x at a side, both in between."""
     across, up = abs(along[0]), abs(along[1])
-    return across > DIAGONAL * up, up > DIAGONAL * across
+    return across > _DIAGONAL * up, up > _DIAGONAL * across

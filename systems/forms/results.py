@@ -23,7 +23,7 @@ from pinjoint.components.view import Readout
 
 SECTION = marked("Results")
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small
-MRAD = "mrad", 1000.0  # rotations of structures are small
+_MRAD = "mrad", 1000.0  # rotations of structures are small
 SHORT = 4  # characters of names by which the ends of a rod are called
 
 
@@ -74,11 +74,11 @@ def along(model: Model, rod: Rod, distance: float) -> Readout:
     scales = (rods.end_axial_force, "kN"), (rods.shear, "kN"), (rods.largest_moment[:, 0], "kN·m")
     of = dict(zip((AXIAL, SHEAR, MOMENT), scales, strict=True))
     rows = [(name, _number(there.forces[name], *of[name])) for name in of]
-    moved, turned = CM[1] * there.moved, MRAD[1] * rods.end_rotation
+    moved, turned = CM[1] * there.moved, _MRAD[1] * rods.end_rotation
     column = np.append(CM[1] * model.particles.displacement, moved)
     moved_so_far = _vector("", moved.tolist(), column, CM[0], Particle.displacement).text
     rows.append((tr("displacement"), moved_so_far))
-    rows.append((tr("rotation"), _number(MRAD[1] * there.rotation, turned, MRAD[0])))
+    rows.append((tr("rotation"), _number(_MRAD[1] * there.rotation, turned, _MRAD[0])))
     place = written.length(there.distance, written.DIGITS)
     return Readout(f"{model.describe(rod)}, x = {place}", tuple(rows))
 
@@ -147,7 +147,7 @@ def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Reading]:
         (tr("N at its ends"), Rod.end_axial_force, "kN", 1.0),
         (tr("V at its ends"), Rod.shear, "kN", 1.0),
         (tr("M at its ends"), Rod.bending_moment, "kN·m", 1.0),
-        (tr("rotation of its ends"), Rod.end_rotation, *MRAD),
+        (tr("rotation of its ends"), Rod.end_rotation, *_MRAD),
     )[: 4 if bends else 2]:
         values = factor * columns(f"rods.{field.name}")
         yield _vector(title, values[row], values, unit, field, axes=ends)
@@ -185,8 +185,8 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading
         yield _vector(tr("displacement"), moved[row], moved, CM[0], Particle.displacement)
         turns = rigid_joints(columns.model)[row]
         if turns:
-            angle = MRAD[1] * particles.rotation
-            yield _result(tr("rotation"), _number(angle[row], angle, MRAD[0]), Particle.rotation)
+            angle = _MRAD[1] * particles.rotation
+            yield _result(tr("rotation"), _number(angle[row], angle, _MRAD[0]), Particle.rotation)
         held = particles.fixed[row]
         if held.any():
             yield _vector(tr("reaction"), reactions[row], reactions, "kN", Particle.reaction, held)

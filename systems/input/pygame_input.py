@@ -100,7 +100,9 @@ class PygameInput(System):
         elif event.type == pygame.MOUSEBUTTONDOWN:
             view.pointer = _scaled(event.pos, ratio)
             if event.button == pygame.BUTTON_LEFT:
-                self._grip = ("ctrl+click" if _control(pygame.key.get_mods()) else "click", view.pointer)
+                held = pygame.key.get_mods()
+                adds = _control(held) or held & pygame.KMOD_SHIFT
+                self._grip = ("ctrl+click" if adds else "click", view.pointer)
             elif event.button == pygame.BUTTON_RIGHT:
                 self._right = 0.0, 0.0
         elif event.type == pygame.MOUSEBUTTONUP:

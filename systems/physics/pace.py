@@ -17,12 +17,12 @@ from pinjoint.systems.physics.bending import deformations, free_coordinates, sti
 Array = NDArray[np.float64]
 
 DENSE = 100  # particles up to which a full matrix is solved, without loading a library for others
-SLIGHTLY = 1e-10  # of the largest stiffness: holds mechanisms, which then move far, but not infinitely
-PERIOD_SHOWN = 2.0  # s in which one oscillation is shown
-CREEP_SHOWN = 0.7  # s in which an overdamped model creeps by 1 − 1/e of the way
-LOADING_SHOWN = 4.0  # s in which a load history is shown
-FLIGHT_SHOWN = 2.5  # s in which a free body crosses the scene
-REAL_TIME = (0.2, 5.0)  # a mechanism or flight this near to real time is shown in real time
+_SLIGHTLY = 1e-10  # of the largest stiffness: holds mechanisms, which then move far, but not infinitely
+_PERIOD_SHOWN = 2.0  # s in which one oscillation is shown
+_CREEP_SHOWN = 0.7  # s in which an overdamped model creeps by 1 − 1/e of the way
+_LOADING_SHOWN = 4.0  # s in which a load history is shown
+_FLIGHT_SHOWN = 2.5  # s in which a free body crosses the scene
+_REAL_TIME = (0.2, 5.0)  # a mechanism or flight this near to real time is shown in real time
 
 
 def natural_pace(model: Model, *, moving: bool = True) -> float:
@@ -36,7 +36,7 @@ def natural_pace(model: Model, *, moving: bool = True) -> float:
     pace = swing if swing is not None else _flight_pace(model, moving)
     end = loads_end(model)
     if math.isfinite(end) and end > 0.0:
-        pace = max(pace, end / LOADING_SHOWN)
+        pace = max(pace, end / _LOADING_SHOWN)
     return round_near(pace)
 
 
@@ -48,9 +48,9 @@ def _response_time(model: Model) -> float | None:
     frequency, damping = response
     ratio = damping / (2.0 * frequency)
     if ratio < 1.0:
-        return 2.0 * math.pi / frequency / PERIOD_SHOWN
+        return 2.0 * math.pi / frequency / _PERIOD_SHOWN
     creep = frequency / (ratio + math.sqrt(ratio * ratio - 1.0))
-    return 1.0 / creep / CREEP_SHOWN
+    return 1.0 / creep / _CREEP_SHOWN
 
 
 def loaded_mode(model: Model) -> tuple[float, float] | None:
@@ -136,7 +136,7 @@ def _forces(model: Model) -> Array:
 def _solved_in_full(model: Model, free: NDArray[np.intp], force: Array) -> Array:
     """The displacements of free directions under forces, both (k,), by a full matrix."""
     matrix, stiffest = stiffness_matrix(model)
-    held = matrix + SLIGHTLY * stiffest * np.eye(len(free))
+    held = matrix + _SLIGHTLY * stiffest * np.eye(len(free))
     return np.asarray(np.linalg.solve(held, force), dtype=np.float64)
 
 
@@ -149,7 +149,7 @@ def _solved_sparsely(model: Model, free: NDArray[np.intp], force: Array) -> Arra
     elongations = csc_matrix((entries, (rows, columns)), (len(stiffness), free_coordinates(model).size))
     elongations = elongations[:, free]
     matrix = elongations.T @ elongations.multiply(stiffness[:, None]).tocsc()
-    held = matrix + SLIGHTLY * stiffness.max() * identity(len(free), format="csc")
+    held = matrix + _SLIGHTLY * stiffness.max() * identity(len(free), format="csc")
     solved: Array = splu(csc_matrix(held)).solve(force)
     return solved
 
@@ -167,5 +167,5 @@ def _flight_pace(model: Model, moving: bool) -> float:
         times.append(size / speed)
     if pull > 0.0:
         times.append(math.sqrt(2.0 * size / pull))
-    pace = min(times, default=FLIGHT_SHOWN) / FLIGHT_SHOWN
-    return 1.0 if REAL_TIME[0] <= pace <= REAL_TIME[1] else pace
+    pace = min(times, default=_FLIGHT_SHOWN) / _FLIGHT_SHOWN
+    return 1.0 if _REAL_TIME[0] <= pace <= _REAL_TIME[1] else pace

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -141,13 +140,14 @@ def operator_of(model: Model, along: Array, ends: Array, tension: Array | None =
     return RodOperator(model, along, None if tension is None else tension / model.rods.rest_length)
 
 
-def largest_eigenvalue(operator: Callable[[Array], Array], rows: int, bound: float, width: int = 2) -> float:
-    """An upper bound of the largest eigenvalue of a symmetric operator by Lanczos' method: Ritz value plus residual.
+def _largest_eigenvalue(operator: RodOperator, width: int) -> float:
+    """An upper bound of the largest eigenvalue of an operator by Lanczos' method: Ritz value plus residual.
 
-    width: entries of a row. bound: what the result does not exceed. The start vector is fixed, sums are in a fixed order, so
+    width: entries of a row. The start vector is fixed, sums are in a fixed order, so
     that the result (and with it the step size) is the same on every run. Its entries, k²φ mod 1, differ differently
     from row to row: it must not be blind to a direction, as kφ is to that of (1, −1).
     """
+    rows, bound = operator.rows, operator.gershgorin()
     if width * rows <= LANCZOS_STEPS:  # the method would go all the way
         matrix = [operator(unit.reshape(-1, width)).ravel() for unit in np.eye(width * rows)]
         return min(max(float(np.linalg.eigvalsh(matrix)[-1]), 0.0), bound)
@@ -188,7 +188,7 @@ def spectrum(model: Model, axial_force: Array, counts: NDArray[np.bool_] | None 
     width = 3 if bends(model) else 2
     if (rods.damping > 0.0).any() or of_ends.any():
         dampers = operator_of(model, damping, of_ends)
-        decay += 0.5 * largest_eigenvalue(dampers, dampers.rows, dampers.gershgorin(), width)
+        decay += 0.5 * _largest_eigenvalue(dampers, width)
     stiffness = operator_of(model, along, ends, tension)
-    highest = largest_eigenvalue(stiffness, stiffness.rows, stiffness.gershgorin(), width)
+    highest = _largest_eigenvalue(stiffness, width)
     return Spectrum(math.sqrt(highest), decay)

@@ -127,6 +127,6 @@ def _wrapped(line: str) -> list[str]:
     return [*lines, line]
 
 
-def indented(lines: Iterable[str], levels: int = 1) -> list[str]:
-    """The lines, so many levels deeper."""
-    return ["    " * levels + line for line in lines]
+def indented(lines: Iterable[str]) -> list[str]:
+    """The lines, a level deeper."""
+    return [f"    {line}" for line in lines]

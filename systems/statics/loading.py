@@ -12,7 +12,7 @@ from pinjoint.components.model import Model
 from pinjoint.systems.statics.equations import Array, Flags, largest, normalised
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, moved, rod_names, slack_named
-from pinjoint.systems.statics.factor import SOFT, is_stable, regular, softest, unresisted
+from pinjoint.systems.statics.factor import NO_STIFFNESS, SOFT, is_stable, regular, softest, unresisted
 from pinjoint.systems.statics.follow import HALF, NARROWINGS, Path, Point, Tangent
 from pinjoint.systems.statics.relax import LARGEST_PLASTIC_STRAIN, RUNAWAY, STEPS, relax
 
@@ -95,9 +95,10 @@ class Loading:
         return tangent
 
     def _unresisted(self, tangent: Tangent) -> bool:
-        """True if the load moves the structure against no more stiffness than round-off."""
-        rate, push = tangent.rate, self.path.push(self.point.response)
-        return float(rate @ push) < SOFT * self.path.structure.effort(rate, self.point.response)
+        """True if the load moves the structure against no more stiffness than round-off, and than what keeps it regular."""
+        structure, rate, push = self.path.structure, tangent.rate, self.path.push(self.point.response)
+        energy = float(rate @ push) - NO_STIFFNESS * float(structure.weight @ rate**2)
+        return energy < SOFT * structure.effort(rate, self.point.response)
 
     # --- on the way ----------------------------------------------------------------------------------
 

@@ -333,6 +333,15 @@ def test_a_click_on_a_picture_opens_it(session: Session) -> None:
     assert (session.scene, session.model.title) == ("pause", "Pendulum")
 
 
+def test_a_click_begins_an_empty_model_in_statics(session: Session) -> None:
+    session.resize(1000, 720)
+    session.press("d")
+    session.press("click", middle_of(scene_of(session), "New, empty model", session))
+    assert (session.scene, session.model.particles.count) == ("statics", 0)
+    assert session.settings.opens_in == "statics"
+    assert not session.document.unsaved
+
+
 def test_a_click_on_a_saved_picture_offers_its_name(session: Session) -> None:
     saved_as(session, "a")
     session.press("ctrl+n")

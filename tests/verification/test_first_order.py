@@ -12,13 +12,14 @@ from hypothesis import strategies as st
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
-from pinjoint.components.theory import THEORIES
+from pinjoint.components.theory import FIRST_ORDER, THEORIES
 from pinjoint.documents import models
 from pinjoint.systems.statics.path import Curve, Goal
 from pinjoint.systems.statics.second_order import SecondOrder
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import Start
 from pinjoint.systems.statics.theory import Indeterminacy
+from tests.benchmarks.models import storeys
 from tests.reference import closed_forms, frame_theory, statics
 from tests.reference import models as trusses
 from tests.reference.elements import Model as Document
@@ -228,6 +229,15 @@ def test_the_collapse_load_of_limit_analysis_on_the_command_line(capsys: pytest.
     assert found["states"][-1]["load_factor"] == pytest.approx(limit, rel=1e-9)
     assert main(words) == 1
     assert "collapse load of textbooks" in json.loads(capsys.readouterr().out)["message"]
+
+
+def test_a_tall_frame_collapses_when_its_feet_yield() -> None:
+    """What sinks is so much that the share of stiffness which keeps the matrix regular seemed to hold it, for minutes."""
+    model = storeys(1, 30)
+    found = settle(model, 2.0, FIRST_ORDER, Start.undeformed(model, model.rods.plastic_strain))
+    carried = 30 * 4.0 * 20.0 / 2.0  # kN, by each foot
+    assert (found.status, found.events[-1].kind) == ("collapse", "collapse")
+    assert found.final.load_factor == pytest.approx(model.rods.compression_limit[0] / carried, rel=1e-9)
 
 
 def test_what_yields_by_more_than_a_tenth_is_no_result() -> None:

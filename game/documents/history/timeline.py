@@ -11,9 +11,9 @@ from pinjoint.systems.run.simulation import Simulation
 
 Moment = tuple[int, float | None]  # see Simulation.moment
 MEMORY = 256 * 2**20  # bytes that checkpoints may take; less: going back takes longer
-MOST_CHECKPOINTS = 512
-FIRST_INTERVAL = 128  # steps between checkpoints; doubled whenever there are too many
-RUN_UP = 64  # steps before the one gone back to, where a checkpoint is kept for going back further
+_MOST_CHECKPOINTS = 512
+_FIRST_INTERVAL = 128  # steps between checkpoints; doubled whenever there are too many
+_RUN_UP = 64  # steps before the one gone back to, where a checkpoint is kept for going back further
 
 
 class Timeline:
@@ -34,7 +34,7 @@ class Timeline:
         self._checkpoints: dict[int, Checkpoint] = {}
         # Steps begun and the moment when the hand changed, and to what.
         self._hands: list[tuple[int, Moment, Hand | None]] = []
-        self._interval = FIRST_INTERVAL
+        self._interval = _FIRST_INTERVAL
         self._went_back = False
 
     @property
@@ -85,7 +85,7 @@ class Timeline:
             return
         checkpoint = self._checkpoints[now] = self._simulation.checkpoint()
         if len(self._checkpoints) > max(
-            min(MOST_CHECKPOINTS, self._memory // max(checkpoint.state.nbytes, 1)), 2
+            min(_MOST_CHECKPOINTS, self._memory // max(checkpoint.state.nbytes, 1)), 2
         ):
             self._interval *= 2
             kept = {self.first, now}
@@ -128,8 +128,8 @@ class Timeline:
                 self._simulation.stay()
             if start < at < steps:
                 self._change_hand(hand)
-        if self._now < steps - RUN_UP:
-            self._run_to(steps - RUN_UP)
+        if self._now < steps - _RUN_UP:
+            self._run_to(steps - _RUN_UP)
             self._keep()
         self._run_to(steps)
         if self._pull.hand is not None:

@@ -22,7 +22,7 @@ from pinjoint.systems.physics.pace import natural_pace
 action = actions_of("Time")
 
 PACE_STEP = 2.0
-WITH_TIME = (SIMULATION, PAUSE)  # the scenes in which keys of time mean something
+_WITH_TIME = (SIMULATION, PAUSE)  # the scenes in which keys of time mean something
 FAR = 0.2  # s shown that one press skips
 MOST_WORK = 1_000_000  # steps × elements of one skip, some 20 ms
 MOST_IMPACTS = 1_000_000  # of free discs that the steps of one press may hold, about a second
@@ -154,12 +154,12 @@ def _settle(context: Context, pixel: Vector) -> None:
     context.view.follow(context.model, clear=True)
 
 
-action("faster", "+", "run faster", WITH_TIME, repeats=True, while_drawing=True)(
+action("faster", "+", "run faster", _WITH_TIME, repeats=True, while_drawing=True)(
     lambda context, pixel: context.document.live.clock.faster(PACE_STEP)
 )
-action("slower", "-", "run slower", WITH_TIME, repeats=True, while_drawing=True)(
+action("slower", "-", "run slower", _WITH_TIME, repeats=True, while_drawing=True)(
     lambda context, pixel: context.document.live.clock.faster(1.0 / PACE_STEP)
 )
-action("natural pace", "0", "reset the speed to suit the model", WITH_TIME, while_drawing=True)(
+action("natural pace", "0", "reset the speed to suit the model", _WITH_TIME, while_drawing=True)(
     lambda context, pixel: setattr(context.document.live.clock, "factor", 1.0)
 )

@@ -29,13 +29,13 @@ if TYPE_CHECKING:  # it imports scipy
     from pinjoint.force_method.guide import Guide, Mechanism, Set
 
 WIDE = 1.1  # width / height from which the sets stand side by side
-MOST_OF_HEIGHT = 0.45  # of the window that the equations and the table take at most; the rest is scrolled
+_MOST_OF_HEIGHT = 0.45  # of the window that the equations and the table take at most; the rest is scrolled
 LARGE = 500  # rods; work on larger structures is announced in a picture first
 LOW = 1.8  # width / height of a place from which a structure stands beside its caption
 LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; below or beside its caption
 HIGH = 340.0  # points of a set in which a slider has room below supports and reactions
 MOVED = 0.08  # of the size of a structure: about what drawn displacements add to it
-LEAST_EXPLAINED = 300.0  # points of a window; lower ones have no legend
+_LEAST_EXPLAINED = 300.0  # points of a window; lower ones have no legend
 _NOTHING = (-1, False, "", 0, 0)  # no part is shown yet
 CAPTION, SCALE, MARGIN = 66.0, 48.0, 40.0  # points above, below (its slider), at most about a structure
 
@@ -168,13 +168,13 @@ class ForceMethod(Scene):
         hint = joined([tr("still moving") if self._moving() else "", self.hint(context)], BETWEEN)
         self._foot.status = Status(time=None, state=part, hint=hint)
         self._foot.page = self._working()
-        self._head.legend = context.view.legend and whole.height >= LEAST_EXPLAINED * ratio
+        self._head.legend = context.view.legend and whole.height >= _LEAST_EXPLAINED * ratio
         explained = self._explained() if self._head.legend else ()
         head = round(
             heading_height(self._head.heading, whole.width, ratio, load_theme(context.view.theme), explained)
         )
         wanted = page_height(self._foot.page, whole.width, ratio)
-        foot = min(wanted, round(MOST_OF_HEIGHT * whole.height))
+        foot = min(wanted, round(_MOST_OF_HEIGHT * whole.height))
         if foot < wanted:
             self._foot.status = replace(self._foot.status, hint=joined([tr("Wheel more rows"), hint], BETWEEN))
         middle = Viewport(whole.left, whole.top + head, whole.width, max(whole.height - head - foot, 1))

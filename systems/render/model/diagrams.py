@@ -67,7 +67,7 @@ _ALONG = np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9])  # of how far the valu
 # Between ends, and at one.
 _SLIDES = ((0.0, 0.0), (0.5, 0.5), (-0.5, 1.0), (1.0, 2.0), (-1.0, -1.0), (1.5, 4.0))
 _GAP = 1.0  # points between a rod and a value beside it
-_NEAR = 42.0  # points along a rod, or two steps: so far from its end stands a value, but for the last place
+_NEAR = 42.0  # points along a rod, or a step: so far from its end stands a value without a line
 # Points from an end, and along from a value between, of places where its line may end.
 _INSETS = ((0.0, 0.0), (6.0, 6.0), (12.0, -6.0), (18.0, 12.0), (25.0, -12.0), (33.0, 18.0))
 # Shares, where the lines may end, too.
@@ -551,12 +551,11 @@ def _places_by_curves(
     rows = [beyond, np.where(fits, 0.5 * height, beyond), -beside, beyond + 10.0 * u]
     rows.append(np.where(fits, beside, -beside))
     step = reach(along, half) + 3.0 * u
-    near = np.maximum(_NEAR * u, 2.0 * step)
+    near = np.maximum(_NEAR * u, step)
     slides = [
         np.where(inward == 0.0, share * step, inward * np.minimum(other * step, near))
         for share, other in _SLIDES
     ]
-    slides.append(inward * 3.0 * step)
     slides = slides if len(at) <= FEW_VALUES else slides[:3]
     places = _in_rows(at, normal, rows, along, np.stack(slides, axis=1))
     parts = [part.reshape(len(at), -1, 2) for part in (places[:, :, :5], places[:, :, 5:])]  # far ones last

@@ -152,8 +152,8 @@ def _range(columns: list[Values]) -> Vector:
     return low - room, high + room
 
 
-def round_ticks(values: Vector, count: int = _TICKS) -> list[tuple[float, str]]:
+def round_ticks(values: Vector) -> list[tuple[float, str]]:
     """Round values within a range, 1, 2 or 5 times a power of ten apart, and how they are written."""
-    step = round_up(values[1] / count - values[0] / count)
+    step = round_up(values[1] / _TICKS - values[0] / _TICKS)
     first, last = math.ceil(values[0] / step), math.floor(values[1] / step)
     return [(n * step, written.given(n * step, 4)) for n in range(first, last + 1)]
