@@ -19,7 +19,7 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import PAUSE, Environment
 from pinjoint.components.table import Table
-from pinjoint.components.theory import EXACT
+from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.components.view import View
 from pinjoint.components.wording import missing, quoted
 from pinjoint.documents import models
@@ -239,8 +239,10 @@ class Headless(Context):
         """
         return self.document.statics.settled(theory, load_factors)
 
-    def buckling(self, modes: int = 5) -> Buckling:
+    def buckling(self, modes: int = 5, theory: str = FIRST_ORDER) -> Buckling:
         """Critical load factors by linear buckling, ascending, with their modes; changes nothing.
+
+        theory: "exact" tells them from the exact equilibrium under the last load factor of the settings.
 
         Its arrays are factors (k,), modes (k, particles, 2), where members bend with rotations (k, particles, 3), and
         effective_length (rods,) in m, NaN of rods that are not compressed; message: why there is none. Raises
@@ -248,7 +250,8 @@ class Headless(Context):
         """
         from pinjoint.systems.statics.buckling import Buckling
 
-        return Buckling.of(self.model, modes)
+        about = None if theory == FIRST_ORDER else self.document.statics.settled(theory).equilibrium
+        return Buckling.of(self.model, modes, about)
 
 
 def forward(name: str, value: float, *, whole: bool = False) -> float:

@@ -9,28 +9,35 @@ from typing import Any
 import numpy as np
 
 from pinjoint.commands.arguments import Parser, UsageError, count, option
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, model_of
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, model_of
 from pinjoint.commands.output import Row, add_output, aligned, write_result
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
+from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.streams import tell
 from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.events import NoEquilibrium
+from pinjoint.systems.statics.settle import settle
 
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
-        "buckling", "Linear buckling: the load factors at which the structure buckles, and how it moves then."
+        "buckling",
+        "The load factors at which the structure buckles, and how it moves then: by linear buckling, or from the exact"
+        " equilibrium on.",
     )
     add_model(parser)
     option(parser, "--modes N", "find at most N modes; default 5", partial(count, least=1), default=5)
+    add_theory(parser, FIRST_ORDER)
     add_output(parser)
     options = parser.parse_args(words)
     model = model_of(options)
     try:
-        found = Buckling.of(model, options.modes)
+        exact = options.theory == EXACT
+        about = settle(model, model.settings.load_steps, EXACT).equilibrium if exact else None
+        found = Buckling.of(model, options.modes, about)
     except NoEquilibrium as error:
         raise UsageError(str(error), NOT_ANSWERED) from None
     laws = left_out_of_statics(model)
@@ -43,12 +50,12 @@ def command(words: Sequence[str]) -> int:
 
 
 def _data(model: Model, found: Buckling) -> dict[str, Any]:
-    """Linear buckling as plain data.
+    """Buckling as plain data.
 
     factors: none where rods are too coarse for an answer; upper_bounds has what was found then, of the same modes.
     modes: {particle: [x, y, rotation]} of each factor. effective_length: {rod: m} of compressed rods that can bend, and
     effective_length_factor over the lengths of their members.
-    axial_force: {rod: {"steady": kN, "factor 1": kN, "critical": kN}}.
+    axial_force: {rod: {"steady": kN, "factor 1": kN, "critical": kN}}, about an equilibrium along a line from there.
     """
     names, rods = model.particles.names, model.rods.names
     modes = np.zeros((len(found.modes), model.particles.count, 3))

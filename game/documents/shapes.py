@@ -24,6 +24,7 @@ from pinjoint.systems.edit.arrows import extent
 
 if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.settle import Settlement
+    from pinjoint.systems.statics.state import Start
 
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
 LOWEST = 10  # mechanisms, and modes, in the round of `next`
@@ -130,13 +131,15 @@ def buckling_shapes(model: Model, most: int = LOWEST, *, elastic: bool = False) 
     """The modes in which the structure gives way under its load, with their factors, and the effective length of the
     rod whose compression leads each. Raises NoShape, saying why there is none.
 
+    About the present state, if that is an exact equilibrium under load; else by linear buckling.
     elastic: without those of factors at which what is compressed were strained beyond all that is elastic.
     """
     from pinjoint.systems.statics.buckling import STRAINED, Buckling
     from pinjoint.systems.statics.events import NoEquilibrium
 
+    about = _equilibrium(model)
     try:
-        found = Buckling.of(model, most)
+        found = Buckling.of(model, most, about)
     except NoEquilibrium as reason:
         raise NoShape(str(reason)) from None
     if found.message:
@@ -157,8 +160,17 @@ def buckling_shapes(model: Model, most: int = LOWEST, *, elastic: bool = False) 
             title = marked("Buckling mode {number}: load × {factor} at most; divide the members")
         elif math.isfinite(length):
             title = marked("Buckling mode {number}: load × {factor}; effective length {length} ({rod})")
-        shapes.append(_shape(model, tr(title, **told), motion))
+        place, note = (about.displacement, found.notes[0]) if about is not None else (None, "")
+        shapes.append(_shape(model, tr(title, **told), motion, place, note))
     return shapes
+
+
+def _equilibrium(model: Model) -> Start | None:
+    """The present state, if that is an exact equilibrium under load, about which a structure vibrates or gives way."""
+    from pinjoint.systems.statics.state import Start
+    from pinjoint.systems.statics.vibration import rests_under_load
+
+    return Start.present(model) if not model.first_order and rests_under_load(model) else None
 
 
 def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
@@ -167,14 +179,13 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     About the present state, if that is an equilibrium under load, whose forces stiffen or soften the structure;
     else, and in first-order theory, of the unloaded structure, less its mechanisms.
     """
-    from pinjoint.systems.statics.state import Start
     from pinjoint.systems.statics.theory import FULL, Indeterminacy
-    from pinjoint.systems.statics.vibration import Vibrations, rests_under_load
+    from pinjoint.systems.statics.vibration import Vibrations
 
     if model.rods.count == 0:
         return []
     degrees = Indeterminacy.of(model)
-    about = Start.present(model) if not model.first_order and rests_under_load(model) else None
+    about = _equilibrium(model)
     if most is None and degrees.mechanisms + degrees.rank > FULL:
         most = _LOWEST_OF_LARGE
     found = Vibrations.of(model, about, count=None if most is None else degrees.mechanisms + most)

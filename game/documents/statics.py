@@ -211,12 +211,11 @@ class Statics:
         """The load factor at which the structure buckles, by linear buckling or on its way in exact geometry."""
         from pinjoint.systems.statics.buckling import Buckling
         from pinjoint.systems.statics.events import NoEquilibrium
-        from pinjoint.systems.statics.state import Start
 
         model, jumps = self._model, ("snap-through", "bifurcation")
         factors = [event.load_factor for event in exact.events if event.kind in jumps]
         with suppress(NoEquilibrium, ValueError), model.own_state():
-            factors += Buckling.of(model, 1, Start.undeformed(model, self._strain())).factors.tolist()
+            factors += Buckling.of(model, 1).factors.tolist()
         return min(factors, default=np.inf)
 
     def _find(self) -> None:

@@ -1,7 +1,13 @@
-"""Linear buckling: at which factors of the load a structure gives way, and in which shapes.
+"""Buckling: at which factors of the load a structure gives way, and in which shapes.
 
-K₀ φ = −λ K_G φ: K₀ is the stiffness with the forces that act in full (weight, lack of fit, warmth, moved supports), K_G
-that of the first-order axial forces of the forces and loads at the factor 1. Nothing moves before it gives way.
+Linear, K₀ φ = −λ K_G φ: K₀ is the stiffness with the forces that act in full (weight, lack of fit, warmth, moved supports),
+K_G that of the first-order axial forces of the forces and loads at the factor 1. Nothing moves before it gives way.
+
+About an exact equilibrium at the factor λ₀, λ = λ₀ − φᵀ K_T φ / φᵀ K_T′ φ: K_T is the tangent stiffness there, K_T′ its
+derivative along the path of equilibria, and φ are the modes of K_T φ = −μ K_G φ, K_G by the rates of the axial forces on the
+moved rods. (The eigenvectors of K_T and K_T′ will not do: rods that turn are so stiff along their axes that half of
+the change, without its square, has no meaning.) φᵀ K_T φ falls like a line towards a bifurcation, and like a root towards
+a limit load λ_c, so that λ comes out as far beyond λ_c as λ₀ is before it.
 """
 
 from __future__ import annotations
@@ -16,11 +22,12 @@ from pinjoint.components.model import Model
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import needed_parts
-from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised, upright
+from pinjoint.systems.statics.equations import Array, Response, Rows, Structure, normalised, upright
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, divide_named, rod_names
+from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.factor import SOFT, Factor, pseudo_random, regular, shifted, unresisted
-from pinjoint.systems.statics.state import Start
+from pinjoint.systems.statics.state import Start, StaticState
 from pinjoint.systems.statics.theory import FULL, linear
 
 RESTARTS = 100
@@ -33,6 +40,7 @@ IN_LINE = 1e-6  # sine of the angle between rods, and share of their bending sti
 NOTHING = 1e-10  # of the largest axial force, or of the largest eigenvalue: round-off
 # Of the rods' stiffness: by what tension is to hold a mechanism before it gives way.
 STIFFENED = 1e-6, 1e-8, 1e-10
+STEP = 1e-5  # change of the rods, as a share, over which a derivative along the path of equilibria is taken
 STRAINED = 0.1  # strain at a critical factor above which no material is still elastic
 
 
@@ -41,7 +49,8 @@ class Buckling:
     """factors: critical load factors λ > 0, ascending, (k,). modes: (k, n, 2), where members bend with rotations (n, 3),
     the largest motion of each 1.
 
-    dead, live: first-order axial forces (kN) of what acts in full, and of forces and loads at the factor 1, (rods,).
+    dead, live: first-order axial forces (kN) of what acts in full, and of forces and loads at the factor 1, (rods,); about
+    an equilibrium, by the line that touches their path there.
     effective_length: π √(EI/−N) of compressed rods with a bending stiffness at the lowest factor (m), (rods,); NaN of others
     and where compression does no work in the lowest mode. member_length: of rods that continue each other in a line, all
     together (m), (rods,).
@@ -64,31 +73,44 @@ class Buckling:
     coarse: bool = False
 
     @classmethod
-    def of(cls, model: Model, count: int = MODES, start: Start | None = None) -> Buckling:
+    def of(cls, model: Model, count: int = MODES, about: StaticState | Start | None = None) -> Buckling:
         """The lowest critical load factors of a model, its rods elastic, and the modes in which it gives way.
 
-        start: as in first-order theory. Raises NoEquilibrium where that has no answer, where what acts in full is too much
-        already, or where nothing but its stiffness under no load resists a motion.
+        about: an exact equilibrium under its load factor, from where the next critical ones are told; None: linear
+        buckling. Raises NoEquilibrium where that has no answer, where what acts in full is too much already, where nothing
+        but its stiffness under no load resists a motion, or where the equilibrium is not stable.
         """
         if count < 1:
             raise WrongValue("modes is {modes}; ask for at least 1.", modes=count)
-        dead, whole = (linear(model, start, factor).axial_force for factor in (0.0, 1.0))
-        live = whole - dead
-        live[np.abs(live) <= NOTHING * np.abs(whole).max(initial=0.0)] = 0.0
-        structure = Structure.of(model)
-        stiffness = structure.initial_tangent + _geometric(structure, dead, 0.0)
-        softening = _geometric(structure, live, 1.0)
-        held = _resisting(model, structure, stiffness, softening)
+        structure, stiffens = Structure.of(model), False
+        if about is None:
+            rods = structure.unmoved
+            dead, whole = (linear(model, None, factor).axial_force for factor in (0.0, 1.0))
+            live = _told(whole - dead, whole)
+            steady, softening = _geometric(structure, dead, 0.0), _geometric(structure, live, 1.0)
+            held = _resisting(model, structure, structure.initial_tangent + steady, softening)
+        else:
+            rods, live, held, change = _ahead(structure, about, External.of(model))
+            dead = rods.axial_force - about.load_factor * live
+            softening = _geometric(structure, live, 1.0, rods)
         softens = bool((live < 0.0).any() or model.rods.distributed_force.any())
         vectors = _modes(structure, held, softening, count if softens else 0)
-        factors = _factors(structure, vectors, _geometric(structure, dead, 0.0), softening)
+        if about is None:
+            factors = _factors(structure, vectors, steady, softening)
+        else:
+            resisted, changed = (np.einsum("ik,ik->k", vectors, matrix @ vectors) for matrix in (held, change))
+            nearer = np.divide(resisted, -changed, out=np.full(len(changed), np.inf), where=changed < 0.0)
+            order = np.argsort(nearer)[: int(np.isfinite(nearer).sum())]
+            stiffens, factors = len(order) < len(nearer), about.load_factor + nearer[order]
+            vectors = vectors[:, order]
         fields = structure.fields(vectors)
         modes = np.array([upright(normalised(field)) for field in fields]).reshape(fields.shape)
-        leading = np.array([int(_work(structure, field, -live).argmax()) for field in fields], dtype=np.intp)
+        works = [_work(structure, rods, field, -live) for field in fields]
+        leading = np.array([int(work.argmax()) for work in works], dtype=np.intp)
         member = members(model)
         taking = np.zeros(len(live), dtype=bool)
-        if len(fields):
-            work = np.bincount(member, _work(structure, fields[0], -live))
+        if works:
+            work = np.bincount(member, works[0])
             taking = (work > IDLE * work.max())[member]
         lengths = [_effective_length(model, dead + factor * live) for factor in factors]
         lowest = dead + factors[0] * live if len(factors) else np.zeros(len(dead))
@@ -101,21 +123,56 @@ class Buckling:
             np.bincount(member, model.rods.rest_length)[member].astype(np.float64),
             leading,
             np.array([length[row] for length, row in zip(lengths, leading, strict=True)]),
-            tuple(_notes(model, factors, lowest)),
-            "" if len(factors) else _why_none(model, live),
+            tuple(_notes(model, factors, lowest, about)),
+            "" if len(factors) else _why_none(model, live, stiffens=stiffens),
             bool((needed_parts(model, lowest) > 1).any()),
         )
 
 
-def _geometric(structure: Structure, axial_force: Array, share: float) -> Matrix:
-    """The stiffness of straight rods by these axial forces alone, and by what a share of the distributed forces turns."""
-    bending, bent = structure.bending, structure.unmoved.bent
+def _told(part: Array, whole: Array) -> Array:
+    """Axial forces without those that are round-off beside others."""
+    return np.where(np.abs(part) <= NOTHING * np.abs(whole).max(initial=0.0), 0.0, part)
+
+
+def _ahead(
+    structure: Structure, about: StaticState | Start, external: External
+) -> tuple[Response, Array, Matrix, Matrix]:
+    """The rods in an exact equilibrium, the rate of their axial forces along the path of equilibria (kN for each 1 of the
+    load factor), the tangent stiffness there, and its rate."""
+    limits = np.full(len(structure.ends), np.inf)
+    structure = replace(structure, tension_limit=limits, compression_limit=limits)
+    place = structure.field(about.displacement, about.rotation)
+
+    def rods(by: float, motion: Array | float = 0.0) -> Response:
+        return structure.respond(place + by * motion, about.plastic_strain, about.load_factor + by)
+
+    here = rods(0.0)
+    stiffness = structure.tangent(here, here.slack)
+    if not regular(stiffness, structure.weight, -SOFT).definite:
+        message = tr("The equilibrium is not stable: no load factor can be told at which it would give way.")
+        raise NoEquilibrium("collapse", message)
+    pushed, pulled = (external.at(by) - structure.internal(rods(by)) for by in (0.5, -0.5))
+    motion = Factor(stiffness).solve(structure.gather(pushed - pulled))
+    step = min(STEP / max(structure.move(motion, here), STEP), 1.0)
+    after, before = (rods(by, structure.spread(motion)) for by in (step, -step))
+    change = structure.tangent(after, here.slack) - structure.tangent(before, here.slack)
+    rate = (after.axial_force - before.axial_force) / (2.0 * step)
+    return here, _told(rate, here.axial_force), stiffness, change / (2.0 * step)
+
+
+def _geometric(structure: Structure, axial_force: Array, share: float, rods: Response | None = None) -> Matrix:
+    """The stiffness of straight rods by these axial forces alone, and by what a share of the distributed forces turns.
+
+    rods: where they are, if moved.
+    """
+    rods = structure.unmoved if rods is None else rods
+    bending, bent = structure.bending, rods.bent
     if bending is not None and bent is not None:
         still = {name: np.zeros_like(values) for name, values in vars(bent).items()}
-        along = share * (bending.distributed_force * structure.unmoved.axis).sum(axis=1)
+        along = share * (bending.distributed_force * rods.axis).sum(axis=1)
         bent = replace(bent, **still | {"along": along})
         bending = replace(bending, end_stiffness=np.zeros_like(bending.end_stiffness))
-    rods = replace(structure.unmoved, axial_force=axial_force, bent=bent)
+    rods = replace(rods, axial_force=axial_force, bent=bent)
     return replace(structure, bending=bending).tangent(rods, np.ones(len(axial_force), dtype=bool))
 
 
@@ -215,13 +272,13 @@ def _factors(structure: Structure, vectors: Array, steady: Matrix, softening: Ma
     return np.array(found)
 
 
-def _work(structure: Structure, mode: Array, compression: Array) -> Array:
+def _work(structure: Structure, rods: Response, mode: Array, compression: Array) -> Array:
     """The work of compression (rods,) on what each rod's ends approach each other in a mode, to second order."""
-    unmoved, change = structure.unmoved, structure.relative(mode)
-    aside = unmoved.axis[:, 0] * change[:, 1] - unmoved.axis[:, 1] * change[:, 0]
-    nearer = 0.5 * aside**2 / np.where(unmoved.length > 0.0, unmoved.length, np.inf)
+    change = structure.relative(mode)
+    aside = rods.axis[:, 0] * change[:, 1] - rods.axis[:, 1] * change[:, 0]
+    nearer = 0.5 * aside**2 / np.where(rods.length > 0.0, rods.length, np.inf)
     if structure.bending is not None:
-        nearer += structure.bending.bow(structure.slope_rates(mode, unmoved))[1]
+        nearer += structure.bending.bow(structure.slope_rates(mode, rods))[1]
     work: Array = compression * nearer
     return work
 
@@ -253,8 +310,12 @@ def _effective_length(model: Model, axial_force: Array) -> Array:
     return found
 
 
-def _why_none(model: Model, live: Array) -> str:
-    """Why no factor makes a structure give way."""
+def _why_none(model: Model, live: Array, *, stiffens: bool) -> str:
+    """Why no factor makes a structure give way; stiffens: about an equilibrium, in all modes."""
+    if stiffens:
+        return tr(
+            "From this equilibrium on, the load makes the structure stiffer: no load factor is told at which it gives way."
+        )
     if not live.any():
         return tr("No force or load acts on the rods; apply one, which the load factor multiplies.")
     pressed = np.flatnonzero(live < 0.0)
@@ -267,11 +328,20 @@ def _why_none(model: Model, live: Array) -> str:
     )
 
 
-def _notes(model: Model, factors: Array, lowest: Array) -> list[str]:
-    """What the lowest factor leaves out: strains that are not elastic, struts, and rods that one cubic is too coarse for."""
+def _notes(model: Model, factors: Array, lowest: Array, about: StaticState | Start | None = None) -> list[str]:
+    """From where it is told, and what the lowest factor leaves out: strains that are not elastic, struts, and rods that one
+    cubic is too coarse for."""
     if not len(factors):
         return []
     rods, notes = model.rods, []
+    if about is not None:
+        notes.append(
+            tr(
+                "Told from the exact equilibrium at the load factor {factor:.4g}, as its stiffness changes there: the nearer"
+                " the load comes, the closer.",
+                factor=about.load_factor,
+            )
+        )
     strain = -lowest / rods.stiffness
     if len(strain) and strain.max() > STRAINED:
         row = int(strain.argmax())

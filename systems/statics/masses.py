@@ -89,11 +89,11 @@ class Divided:
         return cls(structure, whole, row, inner, mass, _points(model, heavy), 1000.0 * float(own.min()))
 
     def at(self, state: StaticState | Start) -> tuple[Array, Response]:
-        """Displacements (N, 3) and parts in a state, on the axes as these are bent there, under the whole load."""
-        whole, (row, share) = self.whole, self.inner
+        """Displacements (N, 3) and parts in a state, on the axes as these are bent there, under its load."""
+        whole, (row, share), factor = self.whole, self.inner, state.load_factor
         assert whole.bending is not None
         place = whole.field(state.displacement, state.rotation)
-        held = whole.respond(place, state.plastic_strain, 1.0)
+        held = whole.respond(place, state.plastic_strain, factor)
         assert held.bent is not None
         rigid, slopes = whole.bending.rigid, held.bent.slopes
         slopes = np.where(rigid, slopes, np.where(rigid[:, ::-1], -0.5 * slopes[:, ::-1], 0.0))
@@ -107,10 +107,10 @@ class Divided:
         between = np.column_stack([shift, turned])
         strain, force = state.plastic_strain[self.row], held.axial_force[self.row]
         place, bending = np.concatenate([place, between]), self.structure.bending
-        found = self.structure.respond(place, strain, 1.0)
+        found = self.structure.respond(place, strain, factor)
         assert found.bent is not None
         assert bending is not None
-        bent = bending.bent(found.bent.slopes, force, found.axis, found.length, 1.0, couples=True)
+        bent = bending.bent(found.bent.slopes, force, found.axis, found.length, factor, couples=True)
         return place, replace(found, axial_force=force, slack=held.slack[self.row], bent=bent)
 
     def inertia(self, axis: Array) -> Matrix:

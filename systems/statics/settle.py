@@ -62,6 +62,13 @@ class Settlement:
         return self.states[-1]
 
     @property
+    def equilibrium(self) -> StaticState:
+        """The last state. Raises NoEquilibrium where it is none."""
+        if not self.final.balanced:
+            raise NoEquilibrium(self.status, self.message)
+        return self.final
+
+    @property
     def status(self) -> str:
         """Status of the last state."""
         return self.final.status

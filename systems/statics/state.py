@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -141,17 +141,22 @@ class StaticState:
 
 @dataclass(frozen=True)
 class Start:
-    """The state that settling starts from: displacement (n, 2) in m, plastic strain (rods,), and rotation (n,)."""
+    """The state that settling starts from: displacement (n, 2) in m, plastic strain (rods,), and rotation (n,).
+
+    load_factor: what acts there, if it is an equilibrium.
+    """
 
     displacement: Array
     plastic_strain: Array
     rotation: Array
+    load_factor: float = field(default=1.0, kw_only=True)
 
     @classmethod
     def present(cls, model: Model) -> Start:
-        """A model's present state."""
-        particles = model.particles
-        return cls(particles.displacement.copy(), model.rods.plastic_strain.copy(), particles.rotation.copy())
+        """A model's present state, or the solution that it shows."""
+        particles, strain = model.particles, model.rods.plastic_strain.copy()
+        factor = 1.0 if model.solution is None else model.settings.load_steps[-1]
+        return cls(particles.displacement.copy(), strain, particles.rotation.copy(), load_factor=factor)
 
     @classmethod
     def undeformed(cls, model: Model, plastic_strain: Array) -> Start:

@@ -104,17 +104,17 @@ class Vibrations:
 
 def rests_under_load(model: Model) -> bool:
     """True if the present state is an equilibrium with forces in the rods."""
-    structure = Structure.of(model).with_translations()
-    response = _present(structure, Start.present(model))[1]
-    external, pull = External.of(model).at(1.0), structure.largest_force(response)
+    structure, present = Structure.of(model).with_translations(), Start.present(model)
+    response = _present(structure, present)[1]
+    external, pull = External.of(model).at(present.load_factor), structure.largest_force(response)
     unbalanced = structure.gather(external - structure.internal(response))
     return pull > 0.0 and structure.greatest(unbalanced) <= UNBALANCED * max(pull, structure.largest(external))
 
 
 def _present(structure: Structure, state: StaticState | Start) -> tuple[Array, Response]:
-    """Displacements and rods in a state under the whole load."""
+    """Displacements and rods in a state under its load."""
     place = structure.field(state.displacement, state.rotation)
-    return place, structure.respond(place, state.plastic_strain, 1.0)
+    return place, structure.respond(place, state.plastic_strain, state.load_factor)
 
 
 def _modes(

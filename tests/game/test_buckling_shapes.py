@@ -147,3 +147,22 @@ def _deflection(model, shape) -> float:
         cubic = length * (first * share * (1 - share) ** 2 - last * share**2 * (1 - share))
         largest = max(largest, float(np.abs(cubic).max()))
     return largest
+
+
+def test_statics_tells_buckling_about_the_exact_equilibrium() -> None:
+    """In first order by linear buckling; in exact theory from the last load step on, as vibrations are."""
+    session = session_of(column(8, CLAMPED, HEADS["free"], stiffness=1e5))
+    session.settings.load_steps = (10.0,)
+    session.press("q")
+    session.press("b")
+    assert shown(session).startswith(f"Buckling mode 1: load × {session.buckling().factors[0]:.4g};")
+    session.press("z")
+    session.press("b")
+    told = session.buckling(1, theory="exact").factors[0]
+    assert told > (1.0 + 2e-4) * session.buckling().factors[0]
+    shape = session.document.shapes.shown
+    assert shape is not None
+    assert shape.title.startswith(f"Buckling mode 1: load × {told:.4g};")
+    assert shape.about == pytest.approx(session.statics().final.displacement)
+    assert "the load factor 10" in shape.note
+    assert mode_shapes(session.model, 1)[0].title.startswith("Mode 1 of 24 under load: ")

@@ -23,9 +23,13 @@ def test_any_damage_to_a_file(first: int) -> None:
 
 
 @pytest.mark.timeout(120)
-@pytest.mark.parametrize("seed", [2, 3, 5])
-def test_any_edits_in_statics(seed: int) -> None:
-    """3: a rod a tenth too long that yields, 5: a structure with a slack cable that falls in on itself, took minutes."""
+@pytest.mark.parametrize(
+    ("seed", "mending", "least", "most"),
+    [(2, solved_edits.MENDING, 0.7, 0.95), (3, 0.0, 0.7, 1.0), (5, 0.0, 0.2, 0.5)],
+)
+def test_any_edits_in_statics(seed: int, mending: float, least: float, most: float) -> None:
+    """Most states are stable, by construction, and some are not. 3: a rod a tenth too long that yields, 5: a structure with
+    a slack cable that falls in on itself, took minutes."""
     seen = Counter[str]()
-    solved_edits.attempt(seed, 60, seen)
-    assert seen["stable"] > 20
+    solved_edits.attempt(seed, 60, seen, mending)
+    assert least <= seen["stable"] / seen["states"] <= most

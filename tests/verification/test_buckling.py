@@ -1,6 +1,7 @@
 """Linear buckling: Euler's four loads, portals, columns under their own weight, and textbook matrices, assembled slowly."""
 
 import itertools
+import json
 import math
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
 from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.events import NoEquilibrium
+from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.theory import linear
 from tests.reference.models import CLAMPED, PINNED, line, model, particle, rod
 
@@ -297,6 +299,87 @@ def test_notes_name_struts_and_strains() -> None:
 
 
 # --- the command -----------------------------------------------------------------------------------------
+
+
+# --- about an exact equilibrium ------------------------------------------------------------------------
+
+
+def about(made: Model, factor: float, count: int = 2) -> Buckling:
+    """From the exact equilibrium at a load factor on."""
+    return Buckling.of(made, count, settle(made, factor).equilibrium)
+
+
+def test_a_straight_column_gives_way_a_little_later_since_it_is_shorter() -> None:
+    """At P_E (1 + P_E/EA), the length being L (1 − P/EA); told from far below by a line, which errs by as much again, and
+    by the square of what is missing. Of eight rods."""
+    made = parse(column(8, PINNED, HEADS["pinned"], stiffness=1e5))
+    linear_factor = Buckling.of(made).factors[0]
+    strain = linear_factor / 1e5
+    told = {share: about(made, share * linear_factor) for share in (0.01, 0.5, 0.75, 0.9999)}
+    later = {share: found.factors[0] / linear_factor - 1.0 for share, found in told.items()}
+    assert later[0.9999] == pytest.approx(strain, rel=0.02)
+    assert later[0.01] == pytest.approx(2.0 * strain, rel=0.02)
+    errors = [later[share] - later[0.9999] for share in (0.5, 0.75)]
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.02)
+    assert told[0.5].effective_length == pytest.approx(LENGTH, rel=1e-3)
+    assert "exact equilibrium at the load factor 49.35" in told[0.5].notes[0]
+
+
+def test_the_limit_load_of_a_shallow_truss_is_approached_by_first_order() -> None:
+    """P(w) = 2 EA (1/l − 1/L) (h − w): the stiffness falls like the root of what is missing to its largest value, so that
+    the line from there ends as far behind it."""
+    session = Session.open("von_mises")
+    made, (span, height) = session.model, np.abs(session.model.rods.difference[0])
+    length, stiffness = np.hypot(span, height), session.model.rods.stiffness[0]
+    low = math.sqrt((span**2 * length) ** (2 / 3) - span**2)  # h − w at the limit, where l³ = b² L
+    limit = (
+        2.0
+        * stiffness
+        * low
+        * (1.0 / np.hypot(span, low) - 1.0 / length)
+        / -sum(one.force[1] for one in made.loads)
+    )
+    assert Buckling.of(made).factors[0] > 5.0 * limit
+    for missing in (1e-2, 1e-4, 1e-6):
+        beyond = about(made, (1.0 - missing) * limit).factors[0] / limit - 1.0
+        assert beyond / missing == pytest.approx(1.0, abs=0.55 * missing**0.5)
+    with pytest.raises(NoEquilibrium, match="not stable"):
+        about(parse(column(1, PINNED, {"force": [0.0, 0.0]})), 1.0)
+
+
+@pytest.mark.parametrize(
+    ("moment", "share", "later"), [(1e-3, 0.5, 1.3e-5), (1e-2, 0.9, 1.5e-3), (0.1, 0.5, 1.9e-3)]
+)
+def test_an_eccentric_load_is_told_near_eulers(moment: float, share: float, later: float) -> None:
+    """By 1 mm to 10 cm of 10 m; a column that bows as far as a tenth of its length grows stiffer (elastica)."""
+    document = column(8, PINNED, HEADS["pinned"], stiffness=1e7)
+    for end, sign in ((0, 1.0), (-1, -1.0)):
+        document["particles"][end]["moment"] = sign * moment
+    made = parse(document)
+    euler = Buckling.of(made).factors[0]
+    assert about(made, share * euler).factors[0] / euler - 1.0 == pytest.approx(later, rel=0.05)
+    bowed = settle(made, share * euler).final.displacement[4, 0]
+    secant = moment * (1.0 / math.cos(0.5 * math.pi * math.sqrt(share)) - 1.0)
+    assert abs(bowed) == pytest.approx(secant, rel=5e-3)
+    if moment == 0.1:
+        far = about(made, 0.99 * euler)
+        assert len(far.factors) == 0
+        assert "makes the structure stiffer" in far.message
+
+
+def test_the_command_tells_from_the_exact_equilibrium_on(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "column.json"
+    path.write_text(json.dumps(column(8, PINNED, HEADS["pinned"], stiffness=1e5)), encoding="utf-8")
+    assert main(["buckling", str(path), "--theory", "exact", "--format", "json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["factors"][0] == pytest.approx(98.89, abs=0.01)
+    assert found["axial_force"]["R1"]["factor 1"] == pytest.approx(-1.0, rel=1e-6)
+    assert Session.open(str(path)).buckling(1, theory="exact").factors[0] == pytest.approx(
+        found["factors"][0], rel=1e-9
+    )
+    assert main(["buckling", str(path), "--theory", "exact", "--set", "particles.P8.force=1,0"]) == 1
 
 
 def test_the_command_prints_factors_modes_and_effective_lengths(

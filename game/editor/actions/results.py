@@ -82,16 +82,13 @@ def _following(context: Context, shown: bool) -> bool:
     return True
 
 
-@action(
+action(
     "toggle statics",
     "q",
     "statics: the equilibrium",
     pressed=lambda context: context.scenes.hub == STATICS and context.scene != SIMULATION,
     while_drawing=False,
-)
-def _toggle_statics(context: Context, pixel: Vector) -> None:
-    """Go to statics, or back to pause."""
-    context.scenes.request_from_pause(PAUSE if context.scene == STATICS else STATICS)
+)(lambda context, pixel: context.scenes.request_from_pause(PAUSE if context.scene == STATICS else STATICS))
 
 
 @action(
@@ -113,19 +110,14 @@ def _next_theory(context: Context, pixel: Vector) -> None:
     )
 
 
-@action(
+action(
     "toggle undeformed",
     "y",
     "shape: undeformed or deformed",
     (STATICS,),
     pressed=attrgetter("model.settings.original_diagrams"),
     while_drawing=False,
-)
-def _toggle_undeformed(context: Context, pixel: Vector) -> None:
-    """The structure with its diagrams in its undeformed shape, or deformed."""
-    context.settings.original_diagrams = not context.settings.original_diagrams
-
-
+)(toggle("original_diagrams", "settings"))
 action("toggle free bodies", "x", "show or hide free-body diagrams", pressed=attrgetter("view.free_bodies"))(
     toggle("free_bodies")
 )

@@ -19,9 +19,9 @@ ZOOM_STEP = 1.2
 THEMES = ("light", "dark", "colour-blind", "colour-blind-dark")  # in the order in which one follows another
 
 
-def toggle(what: str) -> Perform:
-    """Show something in the view, or hide it."""
-    return lambda context, pixel: setattr(context.view, what, not getattr(context.view, what))
+def toggle(what: str, of: str = "view") -> Perform:
+    """Show something in the view, or hide it; or switch a setting."""
+    return lambda context, pixel: setattr(it := getattr(context, of), what, not getattr(it, what))
 
 
 action("zoom in", "wheel up", "zoom in at the pointer", IN_PICTURES)(
