@@ -458,7 +458,8 @@ def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:
     same = np.abs(ends[:, 0] - ends[:, 1]) <= _ALIKE * largest
     same[which] = False
     middle = np.flatnonzero(same & (told.any(axis=1) | (quantity == AXIAL)))
-    middle = middle[~_continued(sheet, diagram.rows[middle], ends[middle, 0], largest)]
+    constant = ends[middle, 0] if quantity == AXIAL else np.abs(ends[middle, 0])
+    middle = middle[~_continued(sheet, diagram.rows[middle], constant, largest)]
     told[same] = False
     if quantity == MOMENT:
         told &= ~_repeated(sheet, diagram, ends, largest)
@@ -475,9 +476,9 @@ def _continued(sheet: Sheet, rows: Rows, constant: Values, largest: float) -> Tr
     """Which rods with constant values go on from another one with the same, by a joint of these two only."""
     start, end = sheet.ends[rows].T
     before = np.full(len(sheet.centres), np.nan)
-    before[end] = np.abs(constant)
+    before[end] = constant
     joined = np.bincount(sheet.ends.ravel(), minlength=len(sheet.centres)) == 2
-    same: Truths = joined[start] & (np.abs(before[start] - np.abs(constant)) <= _ALIKE * largest)
+    same: Truths = joined[start] & (np.abs(before[start] - constant) <= _ALIKE * largest)
     return same
 
 
