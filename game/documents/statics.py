@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pinjoint.components import written
 from pinjoint.components.field import Column, Role
 from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.model import Model
@@ -71,8 +73,8 @@ class Statics:
         self.problem = ""
         self.motion: Shape | None = None
         self.revision, self.offered = 0, -1
-        # The revision of which the theories were compared, what came of it, and the other one's way.
-        self._compared: tuple[int, SecondOrder | None, Settlement | None] = -1, None, None
+        # The revision of which the theories were compared, what came of it, the other one's way, the critical load factor.
+        self._compared: tuple[int, SecondOrder | None, Settlement | None, float] = -1, None, None, np.inf
         self._rest = -1, 0.0  # the revision that was asked for last, and since when (s)
         self.part = math.inf  # s of a frame, for solving
 
@@ -134,7 +136,7 @@ class Statics:
     def _left_out(self) -> list[str]:
         model = self._model
         moving = bool(model.particles.count and model.tables["particles"].storage("velocity").any())
-        loose = np.flatnonzero(~nodes(model))
+        loose = np.flatnonzero(~nodes(model) & self.first_order)
         return [
             tr("Statics leaves out velocities.") if moving and model.rods.count else "",
             plural(
@@ -245,13 +247,25 @@ class Statics:
             both = (settlement, other) if self.first_order else (other, settlement)
             rests = other.final.balanced
             found = SecondOrder.of(self._model, *(one.final for one in both)) if rests else None
-            self._compared = self.revision, found, other
-        _, difference, compared = self._compared
-        if difference is not None:
-            return difference.said
-        if compared is None or compared.final.balanced or not self.first_order:
-            return ""
-        return tr("exact: {status}", status=tr(compared.status))
+            differ = self.first_order and (found is not None or not rests)
+            self._compared = self.revision, found, other, self._critical(other) if differ else np.inf
+        _, difference, compared, critical = self._compared
+        said = difference.said if difference is not None else ""
+        if compared is not None and not compared.final.balanced and self.first_order:
+            said = tr("exact: {status}", status=tr(compared.status))
+        beyond = tr("above the critical load factor {factor}", factor=written.number(critical))
+        return joined([beyond if critical < self.share else "", said], "; ")
+
+    def _critical(self, exact: Settlement) -> float:
+        """The load factor at which the structure buckles, by linear buckling or on its way in exact geometry."""
+        from pinjoint.systems.statics.buckling import Buckling
+        from pinjoint.systems.statics.events import NoEquilibrium
+
+        model, jumps = self._model, ("snap-through", "bifurcation")
+        factors = [event.load_factor for event in exact.events if event.kind in jumps]
+        with suppress(NoEquilibrium, ValueError), model.own_state():
+            factors += Buckling.of(model, 1).factors.tolist()
+        return min(factors, default=np.inf)
 
     def _take(self, solved: Behind[Settlement]) -> None:
         try:
@@ -267,7 +281,7 @@ class Statics:
         """What columns show of a state, by "table.field"."""
         from pinjoint.systems.statics.external import External
 
-        acting = External.of(self._model).at(state.load_factor)
+        acting = External.of(self._model, self._model.settings.theory).at(state.load_factor)
         return state.columns | {
             "particles.applied_force": acting[:, :2],
             "particles.applied_moment": acting[:, 2] if acting.shape[1] > 2 else np.zeros(len(acting)),
