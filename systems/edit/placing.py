@@ -24,19 +24,20 @@ SNAP_REACH = 5.0  # points from a grid line
 Points = NDArray[np.float64]
 
 
-def snapped(model: Model, view: View, point: Vector) -> Vector:
-    """A point (m) moved onto the lines of the shown grid within reach, each axis by itself.
+def snapped(model: Model, view: View, point: Vector, start: Vector = (math.inf, math.inf)) -> Vector:
+    """A point (m) moved onto the lines of the shown grid within reach, else level with or above a start, by axis.
 
     Other points are rounded to a power of ten of at most a pixel, so that numbers stay short.
     """
     shown = np.flatnonzero(model.grids.shown)
     spacing = model.grids.spacing[shown[-1]].tolist() if len(shown) else (math.inf, math.inf)
     found = []
-    for value, step in zip(point, spacing, strict=True):
+    for value, step, from_there in zip(point, spacing, start, strict=True):
         # 3 × 0.1 is 0.3
         line = float(f"{round(value / step) * step:.12g}") if math.isfinite(step) else math.inf
-        near = abs(line - value) * view.camera.scale <= SNAP_REACH * view.pixel_ratio
-        found.append((line if near else round(value, _digits(view))) + 0.0)  # no −0
+        lines = (line, from_there)
+        near = [at for at in lines if abs(at - value) * view.camera.scale <= SNAP_REACH * view.pixel_ratio]
+        found.append((near[0] if near else round(value, _digits(view))) + 0.0)  # no −0
     return found[0], found[1]
 
 

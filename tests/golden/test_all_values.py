@@ -36,7 +36,7 @@ def told(picture: Picture, model: Model) -> tuple[dict[int, list[float]], int]:
     listed: list[tuple[str, str]] = []
     marks = picture.marks
     for before, mark in pairwise(marks):
-        if not isinstance(mark, Text):
+        if not isinstance(mark, Text) or mark.colour == LIGHT.load:
             continue
         if mark.of is None:
             listed.append((mark.text, mark.text))

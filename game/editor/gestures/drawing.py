@@ -112,11 +112,10 @@ class DrawRod(Drawing):
 
     def drop(self, context: Context, pixel: Vector) -> None:
         model, view, begin = context.model, context.view, self.origin
-        self.start(context)
+        point = self._point(context, pixel)
         before = model.particles.count
         with model.transaction(marked("new rod")):
             first = begin if isinstance(begin, Particle) else place(model, view, begin)
-            point = snapped(model, view, view.camera.to_model(pixel))
             self._end = pick_particle(model, view, pixel) or place(model, view, point)
             rod = join(model, first, self._end, rigid=view.rigid)
         made = model.particles.count - before
@@ -124,6 +123,10 @@ class DrawRod(Drawing):
         made_of = (rod.section or tr("rigid")) if view.rigid else ""
         said = [written.length(rod.rest_length, written.DIGITS), made_of, with_new]
         tell(context, joined(said, ", "), rod)
+
+    def _point(self, context: Context, pixel: Vector) -> Vector:
+        """Where it would end without a particle there: nearly level or upright rods are so."""
+        return snapped(context.model, context.view, context.view.camera.to_model(pixel), self.start(context))
 
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; a click where a chain of rods has come to ends the chain."""
@@ -147,7 +150,7 @@ class DrawRod(Drawing):
         start = self.start(context)
         other = pick_particle(context.model, context.view, pixel)
         if other is None or other is self.origin or not isinstance(self.origin, Particle):
-            point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
+            point = self._point(context, pixel)
             end = point if other is None else _drawn_at(context, other)
             return Preview("rod", start, end, written.length(math.dist(start, end), 3))
         try:

@@ -22,7 +22,7 @@ SLIDER = "slider"  # the last word of the actions of what hits one
 _SIZES = 11.0, 10.0, 9.0  # points of its type, the largest in which the title stands whole beside the value
 _KNOB = 5.0  # points, its radius
 # The tools, if the toolbar has them.
-_FIRST = ("place", "rod", "rigid", "support", "force", "load", "toggle help")
+_FIRST = ("place", "rod", "rigid", "support", "force", "new grid", "load", "toggle help")
 
 
 def put_controls(paper: Paper, model: Model, view: View, theme: Theme) -> None:

@@ -138,6 +138,14 @@ def test_with_the_tool_in_hand_rods_follow_one_another_until_the_chain_is_ended(
     assert (empty.particles.count, empty.rods.count) == (3, 3)
 
 
+def test_a_rod_that_is_nearly_level_or_upright_is_so(empty: Session) -> None:
+    press_at(empty, "l", 5.0, -3.0)
+    for x, y in ((0.0, 0.0), (2.0, 0.04), (2.03, -1.5), (1.0, -1.6)):
+        empty.click(x, y)
+    places = [particle.position for particle in empty.particles]
+    assert places == [(0.0, 0.0), (2.0, 0.0), (2.0, -1.5), (1.0, -1.6)]
+
+
 def test_a_drag_over_nothing_with_the_rod_tool_makes_both_ends(empty: Session) -> None:
     empty.act("rod", (5.0, 5.0))
     empty.drag((0.0, 0.0), (1.0, 1.0))

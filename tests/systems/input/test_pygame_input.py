@@ -97,6 +97,12 @@ def test_modifiers_come_first(session: Session) -> None:
     assert pressed(session, key(pygame.K_p, mod=pygame.KMOD_SHIFT)) == ["p"]
 
 
+@pytest.mark.parametrize("held", [pygame.KMOD_CTRL, pygame.KMOD_SHIFT])
+def test_a_click_with_ctrl_or_shift_adds(session: Session, held: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pygame.key, "get_mods", lambda: held)
+    assert pressed(session, down(300, 500), up(300, 500)) == ["ctrl+click"]
+
+
 def test_losing_the_focus_ends_a_drag_but_makes_no_click(session: Session) -> None:
     x, y = session.view.camera.to_pixels((1.0, 1.0)).tolist()
     pressed(session, down(x, y), motion(x + 30, y))
