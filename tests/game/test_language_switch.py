@@ -76,6 +76,15 @@ def test_boxes_show_and_take_a_comma_in_portuguese_and_give_scripts_the_point():
     assert session.particles["B"].force[0] == 12.5
 
 
+def test_boxes_show_what_may_be_chosen_in_portuguese():
+    session = Session.open("gerber_beam")
+    with spoken("pt"):
+        session.select(session.rods["AB"])
+        session.act("properties")
+        said = [box.said_text for box in session.scenes.active.form.boxes]
+    assert {"estática", "primeira ordem"} <= set(said)
+
+
 def test_undo_says_in_the_present_language_what_was_done_in_another():
     session = Session.open("isostatic")
     rod = session.model.rods[0]
