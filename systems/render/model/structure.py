@@ -92,8 +92,9 @@ def draw_deflected(sheet: Sheet) -> None:
         return
     rows, shares = np.arange(len(sheet.ends)), np.array([0.0, 0.5, 1.0])
     axes = Axes.of(model, rows, scale)
-    away = sheet.view.camera.scale * np.abs(axes.points(shares) - Axes.of(model, rows).points(shares))
-    if (away > _SHAPE_WIDTH * sheet.unit).any():
+    least = _SHAPE_WIDTH * sheet.unit / sheet.view.camera.scale
+    seen = np.abs(axes.start - model.particles.position[sheet.ends[:, 0]]).max(initial=0.0) > least
+    if seen or (np.abs(axes.points(shares) - Axes.of(model, rows).points(shares)) > least).any():
         start, end = _lines(sheet, axes, rows)
         sheet.occupancy.line(start, end, FAINT)
         sheet.explain("deflected", start, end)
