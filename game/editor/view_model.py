@@ -260,11 +260,11 @@ def _end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
     if found is None:
         return None
     rod, end = found
-    at, particle = ring_of(model, view, rod, end), rod.ends[end].name
+    at, particle = ring_of(model, view, rod, end), rod.ends[end].said
     label = (
-        tr("hinge {rod} at {particle}", rod=rod.name, particle=particle)
+        tr("hinge {rod} at {particle}", rod=rod.said, particle=particle)
         if is_rigid(rod, end)
-        else tr("make {rod} rigid at {particle}", rod=rod.name, particle=particle)
+        else tr("make {rod} rigid at {particle}", rod=rod.said, particle=particle)
     )
     return Preview("hinge", at, at, label)
 

@@ -291,7 +291,8 @@ def label_names(sheet: Sheet) -> None:
         wanted = np.arange(len(rows)) if all_of_them else np.flatnonzero(sheet.chosen(marked, rows))
         for index in wanted[:most].tolist():
             row = int(rows[index])
-            name, is_marked = sheet.model.tables[table].handles[row].name, row in marked
+            handle, is_marked = sheet.model.tables[table].handles[row], row in marked
+            name = handle.said
             size, weight = (sheet.font(12.0), "semibold") if is_marked else (sheet.font(11.0), "regular")
             half, key = np.array(half_size(name, size, weight, sheet.unit)), (f"{table}.name", row)
             of_particle = table == "particles"

@@ -440,7 +440,7 @@ def draw_references(sheet: Sheet, values: Sequence[Numbered], former: int) -> li
     lines, occupancy, u = [], sheet.occupancy, sheet.unit
     for number, label, _ in values:
         table, row = label.of or ("rods", 0)
-        name = Text(str(number or sheet.model.tables[table].names[row]), 9.0, label.colour, grow=1.0)
+        name = Text(str(number or sheet.model.tables[table].handles[row].said), 9.0, label.colour, grow=1.0)
         lines.append(Row((name, Text(label.short, 9.0, label.colour, "semibold")), 6.0))
     low, high = sheet.viewport.corners
     held = np.array([divmod(former, _WIDEST)], dtype=np.float64)
