@@ -85,6 +85,8 @@ def open_window(
     magnification, place = preferred("magnification"), preferred_place()
     app = App(model, file, autosave, theme or preferred("theme"), Preparation(), magnification, place)
     app.session.lesson = lesson
+    if lesson is None:
+        app.session.scenes.begin(app.session)
     app.session.notice = trouble or app.session.notice
     if path is not None:
         with open(path, "w", encoding="utf-8") as script:
@@ -381,6 +383,7 @@ class App:
 
         Where the window shows no model, all that it shows is saved, as a PNG. Raises OSError.
         """
+        self.session.document.statics.go_on(to_the_end=True)
         drawn = [
             (model, on_paper(view))
             for model, view in self.session.stages

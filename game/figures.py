@@ -126,7 +126,8 @@ def _dimensions(model: Model, view: View, theme: Theme) -> Iterator[Mark]:
         return
     pixels, size = view.camera.to_pixels(places), round(_TYPE * unit)
     high = pixels.max(axis=0)
-    for axis, line in ((0, high[1] + (_BELOW - 14.0) * unit), (1, high[0] + (_BESIDE_IT - 16.0) * unit)):
+    beside = _BESIDE_IT - 16.0 + _MOMENTS / 2.0 * is_frame(model)  # clear of names
+    for axis, line in ((0, high[1] + (_BELOW - 14.0) * unit), (1, high[0] + beside * unit)):
         known, first = np.unique(places[:, axis].round(6), return_index=True)
         ticks = pixels[first, axis]
         texts = [written.given(length) for length in np.diff(known).tolist()]

@@ -224,8 +224,8 @@ class Session(Headless):
             else:
                 opened.append(path.stem)
         take_up_lesson(self)
-        if opened and self.scene != "pause":  # not even one that its keys would lead back to
-            self.scenes.request("pause")
+        if opened:
+            self.scenes.request_from_pause(self.settings.opens_in if self.lesson is None else PAUSE)
             self.scenes.apply(self)
         said = tr("Opened {models}. Ctrl+Z goes back.", models=listed(opened)) if opened else ""
         self.notice = joined([*problems, said])

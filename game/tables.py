@@ -110,8 +110,13 @@ class Table(Sequence[tuple[str, ...]]):
         return (name, *(column.text(place - 1) for column in self.columns))
 
     def rows(self) -> Iterator[Sequence[Any]]:
-        """Headings and the numbers in full, None where there is none, for CSV; without sums and powers of ten."""
-        heads = (f"{column.title} ({column.plain_unit})" for column in self.columns)
+        """Headings and the numbers in full, None where there is none, for CSV; without sums and powers of ten.
+
+        Titles that occur more than once follow those before them, as in "M max at x".
+        """
+        titles = [column.title for column in self.columns]
+        said = (f"{titles[k - 1]} {t}" if titles.count(t) > 1 else t for k, t in enumerate(titles))
+        heads = (f"{title} ({column.plain_unit})" for title, column in zip(said, self.columns, strict=True))
         yield self.corner, *(head.removesuffix(" ()") for head in heads)
         columns = [column.values.tolist() for column in self.columns]
         for name, *values in zip(self.names, *columns, strict=True):

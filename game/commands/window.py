@@ -75,7 +75,7 @@ def command(words: Sequence[str]) -> int:
         version=f"pinjoint {__version__}",
     )
     options = parser.parse_args(words)
-    source = options.model or script.EMPTY
+    source = options.model or script.NEW
     model, file = models.load(source), file_of(source)
     with writing(options.record):
         in_window(model, file, options.theme, record=(options.record, source))

@@ -237,6 +237,11 @@ class Scenes:
         way = dict.fromkeys((*(("pause",) if self.active.name == "simulation" else ()), name))
         self.request(*(scene for scene in way if scene != self.active.name))
 
+    def begin(self, context: Context) -> None:
+        """Go to the mode in which a person is to meet the model that was opened."""
+        self.request_from_pause(context.model.settings.opens_in)
+        self.apply(context)
+
     def apply(self, context: Context) -> None:
         """Make the requested transitions: exit, then enter. From a scene of a mod that is switched off, to pause."""
         if self.active.mod is not None and self.active.mod.off and not self._requested:

@@ -71,17 +71,17 @@ def hint(guide: Guide) -> str:
     """The next possible step."""
     steps = [
         tr("I next of M, V, N") if guide.is_frame else tr("I forces"),
-        tr("Esc back to pause"),
+        tr("Esc back"),
         tr("C convention"),
     ]
     if guide.part == 2 and guide.axis_wanted is not None:
         steps = [tr("X horizontal"), tr("Y vertical")]
         if guide.clamp_wanted:
             steps.append(tr("M moment"))
-        steps.append(tr("Esc back to pause"))
+        steps.append(tr("Esc back"))
     elif guide.part == 2:
         known = [tr("K go on with these")] if guide.released else []
-        steps = [tr("click a rod or a support in set 1"), *known, tr("Esc back to pause")]
+        steps = [tr("click a rod or a support in set 1"), *known, tr("Esc back")]
     elif guide.part == PARTS:
         another = [tr("N release another")] if guide.can_release_another else []
         steps = [tr("K finish"), tr("P report as PDF"), *another, *steps]

@@ -8,7 +8,7 @@ from typing import Any
 
 from pinjoint.components.language import decimals, joined, tr
 from pinjoint.components.mistake import WrongValue
-from pinjoint.components.settings import STATICS
+from pinjoint.components.settings import PAUSE, STATICS
 from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import Card, Shape, View
 from pinjoint.documents.document import document
@@ -16,7 +16,7 @@ from pinjoint.documents.models import ModelError, load
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.view_model import offer_tools
 from pinjoint.lessons import progress
-from pinjoint.lessons.judging import Answer, Document, Verdict, begin_in_its_mode, filled, judge, named, said_of
+from pinjoint.lessons.judging import Answer, Document, Verdict, filled, judge, named, said_of
 from pinjoint.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Lesson, Line, Task
 from pinjoint.scripts.lines import play_line
 from pinjoint.scripts.script import ScriptError
@@ -31,11 +31,12 @@ class Course:
     """A lesson that a person is in.
 
     view: of its card, in the part of the window that it takes. at: the number of the task, from 0. accepted: it is done.
-    answer: the choice that was made, or what was typed.
+    answer: the choice that was made, or what was typed. home: the mode from which it was begun.
     """
 
     def __init__(self, session: Any, lesson: Lesson) -> None:
         self._session, self.lesson = session, lesson
+        self.home = session.scenes.hub if session.course is None else session.course.home
         self.view = View()
         self.at = 0
         self.accepted = False
@@ -102,7 +103,7 @@ class Course:
             except ModelError as error:
                 raise self.lesson.script.error(task.line, error) from None
         else:
-            begin_in_its_mode(session)
+            session.scenes.begin(session)
         self.perform(task.setup)
         session.document.shapes.hide()
         session.notice = ""
@@ -131,7 +132,7 @@ class Course:
         session.documents.open(model, ModelFile(None, name), keep=own)
         self._opened = name
         session.document.practice = True
-        begin_in_its_mode(session)
+        session.scenes.begin(session)
         session.notice = ""
 
     def perform(self, lines: Sequence[Line]) -> None:
@@ -369,15 +370,17 @@ def take_up_lesson(session: Any) -> None:
 
 def leave_lesson(session: Any) -> None:
     """Leave the lesson for the document that was open before it."""
+    home = PAUSE if session.course is None else session.course.home
     _seat(session, None)
-    if session.scene != "pause":
-        session.scenes.request("pause")
-        session.scenes.apply(session)
+    session.scenes.request_from_pause(PAUSE)
+    session.scenes.apply(session)
     session.leave_gesture()
     documents = session.documents
     while session.document.practice and documents.can_move(-1):
         documents.move(-1)
     documents.on_begin()
+    session.scenes.request_from_pause(home)
+    session.scenes.apply(session)
 
 
 def _seat(session: Any, course: Course | None) -> None:

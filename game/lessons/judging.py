@@ -111,18 +111,11 @@ _NOTHING = {  # what is said while there is no answer
 def copy_of(session: Session, model: Document, lines: Iterable[Line]) -> Session:
     """A session of its own in which lines were performed, from the same model."""
     copy = type(session).open(model)
-    begin_in_its_mode(copy)
+    copy.scenes.begin(copy)
     for number, entry in lines:
         for expected, got in perform(copy, entry):
             raise ValueError(str(Failure(number, expected, got)))
     return copy
-
-
-def begin_in_its_mode(session: Session) -> None:
-    """Go on to the mode in which a person is to meet the model that was opened in pause."""
-    if session.settings.opens_in != session.scene:
-        session.scenes.request(session.settings.opens_in)
-        session.scenes.apply(session)
 
 
 def holds(session: Session, condition: str, answer: float | None = None) -> bool:

@@ -11,6 +11,7 @@ from typing import Any, TextIO
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import ENGLISH, joined, language, spoken, tr
+from pinjoint.components.settings import STATICS
 from pinjoint.components.wording import is_broken
 from pinjoint.documents.format import ModelError
 from pinjoint.scripts.lines import Failure, play_line
@@ -84,6 +85,8 @@ class Recorder:
         spoken = {"language": language()} if language() != ENGLISH else {}
         self._write({**HEADER, "model": model, "mods": _loaded_mods(), **spoken})
         self.resize()
+        if session.scene == STATICS:  # in which a window begins
+            self._write({"action": "toggle statics"})
         session.act("fit")  # what is fitted as a model is opened may differ
         self._write({"action": "fit"})
 

@@ -40,11 +40,13 @@ from typing import Any
 
 from pinjoint.components.language import ENGLISH, LANGUAGES, tr
 from pinjoint.components.mistake import Mistake
+from pinjoint.components.settings import STATICS
 from pinjoint.components.wording import as_json, cut, remedy
 
 HEADER = {"format": "pinjoint session", "version": 1}
 _HEADER_KEYS = (*HEADER, "model", "title", "description", "mods", "language")
 EMPTY = {"format": "pinjoint model", "version": 1}
+NEW = EMPTY | {"settings": {"opens_in": STATICS}}  # on which a person draws a structure
 # Folders of bundled lessons; those to do ask a student for something.
 TO_WATCH, TO_DO = "lessons", "lessons/tasks"
 

@@ -11,7 +11,8 @@ from pinjoint.components.bent import distributed_shares
 from pinjoint.components.language import plural, tr
 from pinjoint.components.load import static_factor
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends, rigid_joints
+from pinjoint.components.rod import bends, nodes, rigid_joints
+from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.systems.statics.equations import Array, Rows, Structure
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.explain import listed
@@ -32,8 +33,11 @@ class External:
     notes: tuple[str, ...]
 
     @classmethod
-    def of(cls, model: Model) -> External:
-        """The external forces on a model; a varying load counts with the factor of its history in statics."""
+    def of(cls, model: Model, theory: str = EXACT) -> External:
+        """The external forces on a model; a varying load counts with the factor of its history in statics.
+
+        theory: where "first-order", without those on particles that no rod joins, which no contact can hold either.
+        """
         particles, environment = model.particles, model.environment
         scaled = particles.force + np.array(environment.force) + distributed_shares(model)
         moment = particles.moment.copy()
@@ -56,6 +60,8 @@ class External:
             turns = rigid_joints(model) | particles.fixed_rotation
             scaled = np.column_stack([scaled, np.where(turns, moment, 0.0)])
             steady = np.column_stack([steady, np.zeros(particles.count)])
+        if theory == FIRST_ORDER:
+            scaled[~nodes(model)] = steady[~nodes(model)] = 0.0
         return cls(scaled, steady, tuple(notes))
 
     def at(self, factor: float) -> Array:

@@ -130,7 +130,7 @@ class Curve:
         unloaded = settle(model, (0.0,), theory).final
         if not unloaded.balanced:
             raise ValueError(joined([tr("There is no equilibrium to start from."), unloaded.message]))
-        structure, external = Structure.of(model, theory), External.of(model)
+        structure, external = Structure.of(model, theory), External.of(model, theory)
         loaded = external.scaled + structure.carried(structure.unmoved)
         if not structure.gather(loaded).any():
             raise WrongValue(

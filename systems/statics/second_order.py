@@ -10,7 +10,9 @@ from pinjoint.components import written
 from pinjoint.components.bent import farthest
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
-from pinjoint.components.wording import cut
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, nodes
+from pinjoint.components.wording import as_said, cut
 from pinjoint.systems.statics.equations import Array, largest
 from pinjoint.systems.statics.state import StaticState
 
@@ -33,7 +35,7 @@ class SecondOrder:
         """That of two equilibria under the same load, one of which the model shows; None where it is less than LEAST."""
         by_theory = first.diagrams, exact.diagrams
         force = max(largest(first.diagrams[name]) for name in ("end_axial_force", "shear"))
-        moved = [np.hypot(*state.displacement.T) for state in (first, exact)]
+        moved = [np.hypot(*state.displacement.T) * nodes(model) for state in (first, exact)]
         along = farthest(model, np.flatnonzero(model.rods.bending_stiffness > 0.0))[0]
         inside = [np.abs(of["largest_moment"][:, 0]) for of in by_theory]
         compared: dict[str, tuple[list[Array], float]] = {
@@ -66,5 +68,7 @@ class SecondOrder:
 
 def _name(model: Model, quantity: str, row: int, end: int | None = None) -> str:
     if quantity == "largest_moment":
-        return model.rods.names[row]
-    return model.particles.names[row if end is None else int(model.rods.between[row, end])]
+        return as_said(Rod.noun, model.rods.names[row])
+    return as_said(
+        Particle.noun, model.particles.names[row if end is None else int(model.rods.between[row, end])]
+    )

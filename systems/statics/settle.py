@@ -168,7 +168,7 @@ class _Settling:
     def __init__(self, model: Model, theory: str, start: Start) -> None:
         self.model = model
         self.structure = Structure.of(model, theory)
-        self.external = External.of(model)
+        self.external = External.of(model, theory)
         self.events = [Event("note", 0.0, note) for note in self.external.notes]
         self.looked_for_bodies = self.soft = False
         self.slender = np.zeros(model.rods.count, dtype=bool)

@@ -338,6 +338,8 @@ def test_a_click_begins_an_empty_model_in_statics(session: Session) -> None:
     session.press("d")
     session.press("click", middle_of(scene_of(session), "New, empty model", session))
     assert (session.scene, session.model.particles.count) == ("statics", 0)
+    assert session.settings.opens_in == "statics"
+    assert not session.document.unsaved
 
 
 def test_a_click_on_a_saved_picture_offers_its_name(session: Session) -> None:

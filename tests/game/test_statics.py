@@ -1,13 +1,22 @@
 """Statics: what is shown is the equilibrium of what is there, beside the state, which nothing of it touches."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from pinjoint.components.theory import EXACT, FIRST_ORDER
-from pinjoint.documents.document import document
-from pinjoint.editor import view_model
+from pinjoint import app
+from pinjoint.components.camera import Camera
+from pinjoint.components.theory import EXACT, FIRST_ORDER, THEORIES
+from pinjoint.documents import statics as statics_of_documents
+from pinjoint.documents.document import document, parse
+from pinjoint.documents.models import load
+from pinjoint.documents.open_documents import ModelFile
+from pinjoint.lessons.course import take_up_lesson
+from pinjoint.results import Results
+from pinjoint.scripts.lines import Failure
+from pinjoint.scripts.script import NEW
 from pinjoint.session import Session
 from pinjoint.systems.base import Phase
 from pinjoint.systems.render.labels.placing import Placed
@@ -16,6 +25,7 @@ from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.statics.vibration import Vibrations
 from tests.reference import bits
 from tests.reference.sessions import solved_afresh
+from tests.scripted.test_scripted import replayed_from
 
 GERBER: dict[str, Any] = {  # 3 m + 2 m to the hinge, 3 m, q = 12 kN/m
     "format": "pinjoint model",
@@ -159,24 +169,51 @@ def test_in_a_window_theories_are_compared_once_the_hand_rests() -> None:
     assert statics.second_order() == other
 
 
-def test_a_large_structure_is_solved_when_the_hand_lets_go(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Pale meanwhile, with the solution of before; a window alone waits."""
-    monkeypatch.setattr(view_model, "LARGE", 2)
+@pytest.mark.parametrize("theory", THEORIES)
+def test_in_a_window_what_takes_long_comes_frames_later(monkeypatch: pytest.MonkeyPatch, theory: str) -> None:
+    """Pale until then, with the solution of before; an edit meanwhile begins anew; the bits are those of who waits."""
     session = shown("portal")
-    session.window = object()
-    before = session.model.rods.end_axial_force.copy()
-    x, y = session.point(*session.particles["B"].position)
-    session.press("drag", (x, y))
+    session.settings.theory = theory
+    for limit in ("PART", "SMALL"):
+        monkeypatch.setattr(statics_of_documents, limit, 0)  # so that it rests whenever it may
     session.frame(0.0)
-    for number in range(1, 4):
-        session.press("drag to", (x + 9.0 * number, y))
+    session.window = object()
+    session.frame(0.0)
+    before = session.model.rods.end_axial_force.copy()
+    for force in (35.0, 45.0):
+        session.particles["B"].force = (force, -20.0)
         session.frame(0.0)
         np.testing.assert_array_equal(session.model.rods.end_axial_force, before)
-        assert session.view.provisional == session.view.status.state == "solved when you let go"
-    session.press("drop", (x + 27.0, y))
+        assert session.view.provisional == session.view.status.state == "not solved yet"
+    frames = 0
+    while session.view.provisional:
+        session.frame(0.0)
+        frames += 1
+    assert frames > 1
+    assert_is_solution(session, theory)
+    statics, other = session.document.statics, ""
+    while not other:
+        session.frame(0.1)
+        other = statics.second_order(0.1)
+    assert other == shown(document(session.model)).document.statics.second_order()
+
+
+def test_esc_gives_up_what_is_being_solved(monkeypatch: pytest.MonkeyPatch) -> None:
+    session = shown("portal")
+    for limit in ("PART", "REST", "SMALL"):
+        monkeypatch.setattr(statics_of_documents, limit, 0)
+    session.window = object()
     session.frame(0.0)
+    session.particles["B"].force = (35.0, -20.0)
+    session.frame(0.0)
+    assert "Esc gives up" in session.view.status.notice
+    session.press("escape")
+    for _ in range(30):
+        session.frame(0.0)
+    assert session.view.provisional == "not solved yet"
+    monkeypatch.undo()
+    session.particles["B"].force = (36.0, -20.0)
     assert_is_solution(session, "first-order")
-    assert not session.view.provisional
 
 
 def test_a_run_is_not_changed_by_a_look_at_statics() -> None:
@@ -222,6 +259,82 @@ def test_panels_lead_back_to_statics() -> None:
             if session.scene != "statics":
                 session.press("escape")
         assert session.scene == "statics"
+
+
+@pytest.mark.parametrize(("source", "scene"), [("portal", "statics"), ("isostatic", "pause"), (NEW, "statics")])
+def test_a_window_begins_in_the_mode_of_its_model_and_so_does_what_it_records(
+    source: Any, scene: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun: list[tuple[str, Camera]] = []
+
+    def run(self: app.App) -> list[Failure]:
+        begun.append((self.session.scene, self.session.view.camera))
+        assert self.preparation is not None
+        self.preparation.close()
+        self.close()
+        return []
+
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    monkeypatch.setattr(app.App, "run", run)
+    path = tmp_path / "recorded.jsonl"
+    app.open_window(load(source), ModelFile(), record=(str(path), source))
+    replayed = replayed_from(path)
+    assert begun == [(scene, replayed.view.camera)]
+    assert replayed.scene == scene
+
+
+def test_what_is_dropped_is_shown_in_its_mode(tmp_path: Path) -> None:
+    session = Session.open("isostatic")
+    session.save(tmp_path / "truss.json")
+    Session.open("portal").save(tmp_path / "frame.json")
+    for name, scene in (("frame", "statics"), ("truss", "pause")):
+        session.press(f"files {tmp_path}/{name}.json")
+        assert session.scene == scene
+
+
+@pytest.mark.usefixtures("config")
+def test_a_lesson_leads_back_to_where_one_was() -> None:
+    session = shown("isostatic")
+    session.press("d")
+    session.type("14_buckling")
+    session.press("return")
+    assert session.course is not None
+    take_up_lesson(session)
+    session.press("f9")
+    assert (session.scene, session.document.file.name) == ("statics", "isostatic")
+
+
+def test_particles_without_rods_are_left_out_of_first_order() -> None:
+    session = Session.open("ball_on_truss")
+    without = Session(parse(document(session.model)))
+    without.model.delete([without.particles["ball"]])
+    session.press("q")
+    session.update_view()
+    assert not session.view.provisional
+    left_out, differ = "Statics leaves out ball, which has no rods. ", session.document.statics.second_order()
+    assert session.view.status.notice == left_out + differ
+    assert not differ.endswith("at ball")
+    forces = session.rods.axial_force
+    np.testing.assert_array_equal(forces, without.statics("first-order").final.axial_force)
+    loads, reactions = Results.of(session.model).sums.columns[1].values
+    assert loads == pytest.approx(-reactions, rel=1e-12)
+    session.press("z")  # there the ball lies on it
+    session.notice = ""
+    session.update_view()
+    assert "leaves out" not in session.view.status.notice
+    assert np.abs(session.rods.axial_force - forces).max() > 0.1
+
+
+@pytest.mark.parametrize(("name", "factor"), [("eulers_columns", "0.8333"), ("von_mises", "0.9972")])
+def test_first_order_above_the_critical_load_says_so(name: str, factor: str) -> None:
+    session = shown(name)
+    said = session.document.statics.second_order()
+    assert said.startswith(f"above the critical load factor {factor}; second order: +")
+    session.settings.load_steps = (0.5,)
+    assert "critical" not in session.document.statics.second_order()
+    session.settings.load_steps = (1.0,)
+    session.press("z")
+    assert "critical" not in session.document.statics.second_order()
 
 
 def test_no_time_passes() -> None:

@@ -233,6 +233,7 @@ def test_what_is_copied_and_saved_is_read_again(
     for text, separator in ((saved, between), (copied, "\t")):
         head, *read = csv.reader(io.StringIO(text), delimiter=separator)
         assert head == [*next(found.rows())]
+        assert len(set(head)) == len(head)
         assert [row[0] for row in read] == [found.names[row] for row in order]
         for at, one in enumerate(found.columns, start=1):
             numbers = [float(row[at].replace(comma, ".")) if row[at] else math.nan for row in read]

@@ -22,6 +22,7 @@ from pinjoint.documents import models
 from pinjoint.documents.library import DATA_VARIABLE
 from pinjoint.documents.preferences import CONFIG_VARIABLE
 from pinjoint.editor.scenes.form import FormScene
+from pinjoint.scripts.script import NEW
 from tests.reference.hits import hits_for
 
 MISSING = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]
@@ -29,7 +30,6 @@ pytestmark = pytest.mark.skipif(bool(MISSING), reason=f"{' and '.join(MISSING)} 
 
 ROOT = Path(__file__).parents[2]
 PATIENCE = 150.0  # s that anything may take, such as compiling on a slow machine
-EMPTY = {"format": "pinjoint model", "version": 1}
 # How xdotool calls keys whose names are not their characters.
 X_NAMES = {"return": "Return", "escape": "Escape", "ctrl+n": "ctrl+n"}
 
@@ -126,7 +126,8 @@ class Person:
             stdout=self._log,
             stderr=subprocess.STDOUT,
         )
-        self.follower = Session.open(EMPTY)
+        self.follower = Session.open(NEW)
+        self.follower.scenes.begin(self.follower)
         self.follower.view.camera.viewport = Viewport(0, 0, *FIRST_SIZE)
         self.follower.view.fit(self.follower.model)
         self.window = ""
@@ -265,6 +266,7 @@ def test_a_triangle_from_drawing_to_closing_the_window(person: Person) -> None:
     person.press("return", "escape")
 
     person.click_tool("toggle run")
+    person.press("space")  # again, since in equilibrium nothing would move
     person.wait_for("time to pass", lambda: person.press("i") or person.taken[-1]["at"] > 0)
     person.press("space", "return", "escape", "s")
     person.type("my triangle")

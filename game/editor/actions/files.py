@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import tr
-from pinjoint.components.model import Model
 from pinjoint.components.settings import HUBS, STATICS
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.context import Context
+from pinjoint.scripts.script import NEW
 from pinjoint.systems.edit import Refusal, saving
 from pinjoint.systems.input.actions import ACTIONS, actions_of
 
@@ -43,9 +43,7 @@ action("load", "ctrl+o", "open a model")(ACTIONS["load"].perform)
 @action("new", "ctrl+n", "start a new model")
 def _new(context: Context, pixel: Vector) -> None:
     """An empty model, whose structure is drawn in statics."""
-    model = Model()
-    model.settings.opens_in = STATICS
-    context.documents.open(model)
+    context.documents.open(NEW)
     context.scenes.request_from_pause(STATICS)
 
 
@@ -57,5 +55,5 @@ def _sheet(context: Context, pixel: Vector) -> None:
     from pinjoint.sheet import sheet  # it imports reportlab
 
     with saving():
-        path = context.window.save("pinjoint-sheet.pdf", sheet(context.model))
+        path = context.window.save("pinjoint-sheet.pdf", sheet(context.model, context.model.settings.theory))
     context.notice = tr("Sheet saved: {file}", file=path)

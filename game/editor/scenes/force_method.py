@@ -143,7 +143,7 @@ class ForceMethod(Scene):
         return self._work is not None or bool(self._moving())
 
     def hint(self, context: Context) -> str:
-        return words.hint(self.shown_guide) if self.shown_guide else tr("Esc back to pause")
+        return words.hint(self.shown_guide) if self.shown_guide else tr("Esc back")
 
     # --- what is seen ------------------------------------------------------------------------------
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from pinjoint.components.form import Form, Tile
 from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.settings import PAUSE
 from pinjoint.components.view import BETWEEN
 from pinjoint.documents import library, models
 from pinjoint.documents.autosave import recovered_name
@@ -14,8 +15,7 @@ from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.files import FileScene, saved_models
 from pinjoint.lessons import progress
 from pinjoint.lessons.progress import is_done, shelf
-from pinjoint.scripts.script import Script, lessons
-from pinjoint.systems.input.actions import ACTIONS
+from pinjoint.scripts.script import NEW, Script, lessons
 
 LESSONS = marked("Begin here")
 TRUSSES, BENDING, COLLISIONS = EXAMPLES = marked("Trusses"), marked("Members that bend"), marked("Collisions")
@@ -47,7 +47,7 @@ class Load(FileScene):
     def make_form(self, context: Context) -> Form:
         self._asked = False
         own, about = tr("draw your own"), tr("An empty plane to draw on.")
-        new = Tile(tr(LESSONS), tr("New, empty model"), own, "", None, about, "+")
+        new = Tile(tr(LESSONS), tr("New, empty model"), own, "", NEW, about, "+")
         learn = _tasks()
         held = tr("{tasks} to do, {films} to watch", tasks=len(learn), films=len(lessons()))
         rest = Tile(tr(LESSONS), tr("All lessons"), held, "", ALL, symbol="»", rest=True)
@@ -72,8 +72,6 @@ class Load(FileScene):
         """Open the source of a tile; the tile "Discard", chosen twice, discards unsaved work."""
         if tile.source is ALL:
             self.form.tiles.remove(tile)
-        elif tile.source is None:
-            ACTIONS["new"].perform(context, context.view.pixel)
         elif tile.source is not DISCARD:
             self._open(context, tile.source)
         elif self._asked and context.autosave is not None:
@@ -119,7 +117,10 @@ class Load(FileScene):
         except models.ModelError as error:
             self.form.message = str(error)
         else:
-            context.scenes.request(context.model.settings.opens_in if context.lesson is None else "pause")
+            mode, lesson = context.model.settings.opens_in, context.lesson
+            if lesson is not None:  # one with tasks leads back to where one was
+                mode = context.scenes.hub if lesson.task_count else PAUSE
+            context.scenes.request(mode)
 
     def changed(self, context: Context) -> None:
         """Show the tiles whose titles or names contain every word that was typed."""

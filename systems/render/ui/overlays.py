@@ -440,7 +440,7 @@ def draw_references(sheet: Sheet, values: Sequence[Numbered], former: int) -> li
     lines, occupancy, u = [], sheet.occupancy, sheet.unit
     for number, label, _ in values:
         table, row = label.of or ("rods", 0)
-        name = Text(str(number or sheet.model.tables[table].names[row]), 9.0, label.colour, grow=1.0)
+        name = Text(str(number or sheet.model.tables[table].handles[row].said), 9.0, label.colour, grow=1.0)
         lines.append(Row((name, Text(label.short, 9.0, label.colour, "semibold")), 6.0))
     low, high = sheet.viewport.corners
     held = np.array([divmod(former, _WIDEST)], dtype=np.float64)
@@ -449,10 +449,12 @@ def draw_references(sheet: Sheet, values: Sequence[Numbered], former: int) -> li
         inside = Row(columns, 10.0, (6.0, 3.0, 3.0), top=True)
         block = Plate(inside, faded(sheet.theme.background, 0.9), sheet.theme.line, radius=4.0)
         size = np.array([width := block.width(u), block.height(u, width)])
-        x = np.arange(low[0] + 6.0 * u, high[0] - size[0], 6.0 * u)
-        y = np.arange(high[1] - 6.0 * u - size[1], low[1], -6.0 * u)
         inside_it = ((held >= low) & (held + size <= high)).all(axis=1)
-        for corners in (held[inside_it], np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)):
+        for corners in (held[inside_it], None):
+            if corners is None:
+                x = np.arange(low[0] + 6.0 * u, high[0] - size[0], 6.0 * u)
+                y = np.arange(high[1] - 6.0 * u - size[1], low[1], -6.0 * u)
+                corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
             cells = occupancy.cells_of(corners, np.broadcast_to(size, corners.shape))
             free = np.flatnonzero(occupancy.are_free(cells, covered))
             if len(free):
