@@ -254,7 +254,7 @@ class Statics:
         if compared is not None and not compared.final.balanced and self.first_order:
             said = tr("exact: {status}", status=tr(compared.status))
         beyond = tr("above the critical load factor {factor}", factor=written.number(critical))
-        return joined([beyond if critical < self.share else "", said], "; ")
+        return beyond if critical < self.share else said
 
     def _critical(self, exact: Settlement) -> float:
         """The load factor at which the structure buckles, by linear buckling or on its way in exact geometry."""
