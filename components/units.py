@@ -14,7 +14,7 @@ from pinjoint.components.field import FieldError
 
 _Dimension = tuple[int, ...]  # powers of m, kg, s, K; angles have none
 
-_BASES = {  # that prefixes may stand before
+_BASES: dict[str, tuple[str, _Dimension]] = {  # that prefixes may stand before
     "m": ("1", (1, 0, 0, 0)),
     "g": ("1e-3", (0, 1, 0, 0)),
     "s": ("1", (0, 0, 1, 0)),
@@ -26,7 +26,7 @@ _BASES = {  # that prefixes may stand before
     "K": ("1", (0, 0, 0, 1)),
 }
 _PREFIXES = {"": "1", "µ": "1e-6", "m": "1e-3", "c": "1e-2", "da": "1e1", "k": "1e3", "M": "1e6", "G": "1e9"}
-_OTHERS = {
+_OTHERS: dict[str, tuple[str, _Dimension]] = {
     "min": ("60", (0, 0, 1, 0)),
     "h": ("3600", (0, 0, 1, 0)),
     "Hz": ("1", (0, 0, -1, 0)),
@@ -103,7 +103,8 @@ def begins(text: str) -> bool:
 
 def _read(unit: str) -> tuple[Decimal, _Dimension, str]:
     """How many of m, kg, s and K to their powers a unit is, these powers, and what is left of its text."""
-    factor, powers, rest = Decimal(1), (0, 0, 0, 0), unit
+    factor, rest = Decimal(1), unit
+    powers: _Dimension = (0, 0, 0, 0)
     while part := _PART.match(rest):
         mark, name, typed, raised = part.groups()
         power = int(typed or (raised or "1").translate(_RAISED)) * (-1 if mark == "/" else 1)
