@@ -303,7 +303,8 @@ def _heed_names(table: Table[Any], rows: NDArray[np.intp], changed: Collection[s
         stiff = rows[pinned & (table.bending_stiffness[rows] > 0.0)]
         world.assign([table[row] for row in stiff.tolist()], "hinged", [(True, True)] * len(stiff))
         return
-    for row in rows.tolist():
+    named = (table.section[rows] != None) | (table.material[rows] != None)  # noqa: E711 (of each row)
+    for row in rows[named].tolist():
         rod = table[row]
         for name, number in _contradictions(rod, changed):
             if not alone:
@@ -333,8 +334,6 @@ def _follow_names(table: Table[Any], rod: Rod) -> None:
 
 def _contradictions(rod: Rod, changed: Collection[str]) -> list[tuple[str, str]]:
     """Names that a rod has beside another, changed number than theirs, each with the Field of that."""
-    if rod.section is None and rod.material is None:
-        return []
     given = given_by(rod.section, rod.material)
     return [
         (name, number)
