@@ -289,12 +289,15 @@ def inner_forces(model: Model, rows: Rows, quantity: str) -> Array:
 def zeros(polynomials: Array) -> tuple[Rows, Array]:
     """Where polynomials (n, d) change sign between 0 and 1: which one, and at which share, in order."""
     samples = np.linspace(0.0, 1.0, _SAMPLES)
-    signs = np.sign(values(polynomials, samples))
+    sampled = values(polynomials, samples)
+    signs = np.sign(sampled)
     which, place = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0.0)
     low, high = samples[place], samples[place + 1]
     before, slopes, step = signs[which, place], derivative(polynomials), 0.5 * (high - low)
-    share = low + step
-    # Newton's method, or half the interval where that is less: some five times, down to rounding.
+    with np.errstate(over="ignore", invalid="ignore"):  # of numbers beyond computing
+        part = sampled[which, place] / (sampled[which, place] - sampled[which, place + 1])
+    share = low + (high - low) * np.nan_to_num(part, nan=0.5)
+    # From where a straight line is zero, Newton's method, or half the interval where that is less: down to rounding.
     for _ in range(60):
         value = values(polynomials[which], share[:, None])[:, 0]
         low, high = np.where(value * before > 0.0, share, low), np.where(value * before > 0.0, high, share)

@@ -6,6 +6,7 @@ import weakref
 from collections import deque
 from collections.abc import Callable, Collection, Mapping
 from itertools import repeat
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -14,7 +15,9 @@ from numpy.typing import NDArray
 from pinjoint.components.field import Column
 from pinjoint.components.language import tr
 from pinjoint.components.table import Store, Table, refuse_orphans
-from pinjoint.components.wording import missing
+from pinjoint.components.wording import as_said, missing
+
+_NAME = attrgetter("name")
 
 
 class Handle:
@@ -62,6 +65,12 @@ class Handle:
             if not hasattr(type(self), name):
                 getattr(self, name)
             super().__setattr__(name, value)
+
+    @property
+    def said(self) -> str:
+        """Its name as it is read: "rod 7", which nobody gave, in the present language."""
+        name: str = _NAME(self)
+        return as_said(self.noun, name)
 
     @property
     def world(self) -> Store:

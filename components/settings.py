@@ -8,6 +8,7 @@ from typing import Any
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import LARGEST, Field, FieldError, Vector, derived, if_known, look
 from pinjoint.components.handle import Handle
+from pinjoint.components.language import marked
 from pinjoint.components.theory import FIRST_ORDER, THEORIES
 from pinjoint.components.wording import quoted
 
@@ -17,7 +18,7 @@ NO_DIAGRAMS = "none"
 DIAGRAMS = ("N", "M", "V")
 INTEGRATORS = ChainMap(EXTENSIONS.integrators, {AUTOMATIC: None})  # the names of all there are at any time
 # The scenes from which a person edits, and in which a model may open.
-PAUSE, STATICS = HUBS = ("pause", "statics")
+PAUSE, STATICS = HUBS = marked("pause"), marked("statics")
 _MOST_LOAD_STEPS = 100
 
 

@@ -2,5 +2,5 @@
 
 from pinjoint.components.language import marked
 
-THEORIES = FIRST_ORDER, EXACT = "first-order", "exact"
+THEORIES = FIRST_ORDER, EXACT = marked("first-order"), marked("exact")
 NAMES = {FIRST_ORDER: marked("first order"), EXACT: marked("exact geometry")}

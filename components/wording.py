@@ -14,7 +14,7 @@ from keyword import iskeyword
 from typing import Any
 from unicodedata import normalize
 
-from pinjoint.components.language import tr
+from pinjoint.components.language import joined, tr
 
 LONGEST = 60  # characters of a name or value in a sentence
 _FEW = 50  # names; so few are listed: all keys of a rod are
@@ -88,3 +88,9 @@ def missing(group: str, name: str, names: Collection[str]) -> str:
         group=tr(group),
         remedy=remedy(name, names),
     )
+
+
+def as_said(noun: str, name: str) -> str:
+    """A name as it is read: one that nobody gave, such as "rod 7", in the present language."""
+    its, _, number = name.rpartition(" ")
+    return joined([tr(noun), number]) if its == noun and number.isdecimal() else name

@@ -20,7 +20,7 @@ from pinjoint.components.handle import Handle, set_entity
 from pinjoint.components.language import joined, tr
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.table import Table, flags, grown
-from pinjoint.components.wording import cut, missing
+from pinjoint.components.wording import as_said, cut, missing
 
 H = TypeVar("H", bound=Handle)
 
@@ -650,7 +650,7 @@ class World:
 def called(noun: str, name: Any) -> str:
     """An element as a person calls it, such as "rod AB"; a name such as "rod 7" says it all."""
     name = cut(str(name))
-    return name if name.startswith(noun + " ") else joined([tr(noun), name])
+    return as_said(noun, name) if name.startswith(noun + " ") else joined([tr(noun), name])
 
 
 def _delete_context(context: str) -> None:

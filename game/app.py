@@ -383,6 +383,7 @@ class App:
 
         Where the window shows no model, all that it shows is saved, as a PNG. Raises OSError.
         """
+        self.session.document.statics.go_on(to_the_end=True)
         drawn = [
             (model, on_paper(view))
             for model, view in self.session.stages

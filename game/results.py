@@ -12,7 +12,9 @@ from pinjoint.components.derived import chord_rotation, rigid_slopes
 from pinjoint.components.field import CM, ENDS
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends, bends_unchecked, has_strength, nodes, rigid_joints, utilisation
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, bends, bends_unchecked, has_strength, nodes, rigid_joints, utilisation
+from pinjoint.components.wording import as_said
 from pinjoint.components.written import ROUNDING
 from pinjoint.tables import Array, Column, Table
 
@@ -69,7 +71,7 @@ def _of_rods(model: Model, length: Array, force: float, moment: float) -> Table:
     if has_strength(model):
         title = tr("axial utilisation") if bends_unchecked(model).any() else tr("utilisation")
         columns.append(_column("utilisation", title, _PERCENT, utilisation(model)))
-    return Table(tr("rod"), rods.names, columns)
+    return Table(tr("rod"), [as_said(Rod.noun, name) for name in rods.names], columns)
 
 
 def _of_particles(model: Model, force: float, moment: float) -> Table:
@@ -84,7 +86,7 @@ def _of_particles(model: Model, force: float, moment: float) -> Table:
     if turns.any():
         clamped = np.where(turns & particles.fixed_rotation, particles.reaction_moment, np.nan)
         columns.append(_column("reaction_moment", tr("moment"), _KNM, clamped, moment))
-    return Table(tr("particle"), particles.names, columns)
+    return Table(tr("particle"), [as_said(Particle.noun, name) for name in particles.names], columns)
 
 
 def _sums(model: Model, place: Array, bowed: float, force: float, moment: float) -> Table:
@@ -95,7 +97,7 @@ def _sums(model: Model, place: Array, bowed: float, force: float, moment: float)
     particles, used, turns = model.particles, nodes(model), rigid_joints(model)
     held = np.flatnonzero(used & particles.fixed.any(axis=1))
     first = int(held[0]) if len(held) else 0
-    about = particles.names[first] if particles.count else ""
+    about = as_said(Particle.noun, particles.names[first]) if particles.count else ""
     rows = []
     for forces, moments, more in (
         (particles.applied_force, particles.applied_moment, bowed),

@@ -74,7 +74,7 @@ def contents(solved: Solved, layout: Layout) -> list[Flowable]:
     figures.append(draw(tr("Deflected shape"), moved=True))
     large = [block for block in figures if block[1][0].fills_page]
     tables = {
-        tr("Rods"): _members(layout, model),
+        tr("Rods"): _members(layout, solved),
         tr("Forces in rods"): printed(layout, results.rods),
         tr("Joints"): printed(layout, results.particles),
         tr("Sums"): printed(layout, results.sums),
@@ -102,14 +102,13 @@ def _under(heading: Flowable, blocks: list[Block]) -> list[Flowable]:
     return [CondPageBreak(_BEGUN), heading, *parts]
 
 
-def _members(layout: Layout, model: Model) -> list[Block]:
+def _members(layout: Layout, solved: Solved) -> list[Block]:
     """What the rods are: their ends, sections, lengths and stiffnesses."""
-    rods, names = model.rods, model.particles.names
+    rods, names = solved.model.rods, solved.results.particles.names
     stiff = np.where(rods.bending_stiffness > 0.0, rods.bending_stiffness, np.nan)
     columns = [("L", "m", rods.rest_length), ("EA", "kN", rods.stiffness), ("EI", "kN·m²", stiff)]
-    numbers = Table(
-        tr("rod"), rods.names, [Column(*column, alike=False) for column in columns[: 2 + bends(model)]]
-    )
+    shown = [Column(*column, alike=False) for column in columns[: 2 + bends(solved.model)]]
+    numbers = Table(tr("rod"), solved.results.rods.names, shown)
     between = [" – ".join(names[row] for row in both) for both in rods.between.tolist()]
     sections = [
         joined([section, material], ", ") for section, material in zip(rods.section, rods.material, strict=True)

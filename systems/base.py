@@ -144,15 +144,13 @@ class StepSystem(System):
     kernel: "module:function" of a function with @compiled above it, or the function itself. Its parameters are
         bound by name: `<table>_<column>`, `time`, `dt`, an entry of `arrays`, or one of the quantities
         that the role provides. "": the system adds nothing to the step program.
-    impulsive: it acts at instants, by impacts, at which steps have to end.
-    between: "module:object" of the Between (systems/program/compiler.py) that acts between steps; "": none does.
+    impulsive: it acts at instants, by impacts of particles (systems/collision), at which steps have to end.
     """
 
     phase: ClassVar[Phase] = Phase.STEP
     scenes: ClassVar[tuple[str, ...] | None] = ("simulation", "force method")
     kernel: ClassVar[str | Callable[..., Any]] = ""
     impulsive: ClassVar[bool] = False
-    between: ClassVar[str] = ""
 
     def leaves_flight_exact(self, model: Model) -> bool:
         """True if particles fly on exact paths between impacts all the same, for which no integrator is needed.

@@ -1,14 +1,18 @@
 """Statics of a document: the equilibrium from its undeformed beginning, found anew when it is read after an edit.
 
-It lies beside the model, whose state it does not touch. While a model shows it (`World.show`), all columns of forces,
+In a window it gets a part of each frame: what takes longer (yielding, exact geometry, thousands of rods, the comparison of
+theories) comes frames later, and the last solution is pale until then. Scripts, pictures and recordings wait, for the same
+bits. It lies beside the model, whose state it does not touch. While a model shows it (`World.show`), all columns of forces,
 displacements and reactions are its own, so that pictures, panels, tables and scripts read it by no way of their own.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -22,6 +26,7 @@ from pinjoint.components.rod import nodes
 from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.components.view import Shape
 from pinjoint.documents.shapes import last_motion
+from pinjoint.systems.statics.behind import Behind
 
 if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.second_order import SecondOrder
@@ -31,7 +36,9 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
 _MOST_COMPARED = 300  # rods, up to which both theories take a moment only
 REST = 0.2  # s without an edit, after which a window compares them
-LARGE = 1000  # rods, from which on a window solves what a hand moves once it lets go
+# Of a frame of a window, for solving: at least and at most (s), and the share of the last one.
+PART, _MOST, _SHARE = 0.03, 0.25, 0.5
+SMALL = 200  # rods, up to which first order is found within the frame
 _CHOICES = "theory", "load_steps"  # of the settings
 _MOVED = "displacement", "rotation"  # of constrained directions: settled supports
 
@@ -57,6 +64,9 @@ class Statics:
     def __init__(self, model: Model, strain: Callable[[], Column]) -> None:
         self._model, self._strain = model, strain
         self._of: tuple[object, ...] = ()
+        self._sought: tuple[object, ...] = ()  # what it follows from that was sought last
+        self._solving: Behind[Settlement] | None = None
+        self._comparing: tuple[int, Behind[Settlement]] | None = None  # with the revision
         self._seen = -1  # the revision of the model up to which it is known that nothing changed
         self._columns: Mapping[str, Column] = {}
         self._settlement: Settlement | None = None
@@ -66,7 +76,7 @@ class Statics:
         # The revision of which the theories were compared, what came of it, the other one's way, the critical load factor.
         self._compared: tuple[int, SecondOrder | None, Settlement | None, float] = -1, None, None, np.inf
         self._rest = -1, 0.0  # the revision that was asked for last, and since when (s)
-        self.waits = False  # for a hand to let go, with the solution of what was there before
+        self.part = math.inf  # s of a frame, for solving
 
     @property
     def settlement(self) -> Settlement | None:
@@ -99,24 +109,26 @@ class Statics:
 
     @property
     def is_late(self) -> bool:
-        """True if what is shown is the solution of what was there before a hand moved it."""
-        return self.waits and self._of != self._wanted()
+        """True if what is shown, if anything, is the solution of what was there before an edit."""
+        return self._of != self._sought
 
     @property
     def said(self) -> str:
         """The state of what is shown in a few words, in English."""
         settlement = self.settlement
+        if self.is_late:
+            return marked("not solved yet")
         if settlement is None:
             return marked("no solution")
-        if self.is_late:
-            return marked("solved when you let go")
         return SAID[self._model.settings.theory] if settlement.status == "equilibrium" else settlement.status
 
     @property
     def message(self) -> str:
         """What there is to say about it: why there is no solution, what happened on the way, what is left out."""
         settlement = self.settlement
-        if settlement is None:
+        if self._solving is not None and self._solving.seconds > REST:
+            return tr("Solving for {seconds:.1f} s so far. Esc gives up.", seconds=self._solving.seconds)
+        if settlement is None or self.is_late:
             return self.problem
         told = "" if settlement.status == "equilibrium" and not settlement.events else settlement.account
         return joined([told, *self._left_out()])
@@ -145,14 +157,39 @@ class Statics:
         if self._seen == model.revision:
             return
         wanted = self._wanted()
-        if self.waits and self._of and wanted[1] == self._of[1]:
-            return
-        if wanted != self._of:
-            self._of = wanted
-            with model.own_state():
-                self._find()
-            self.revision = model.next_revision()
+        if wanted != self._sought:
+            self.give_up()
+            if self._sought[1:2] != wanted[1:2]:  # other rows
+                self._settlement, self._columns, self.motion, self.problem = None, {}, None, ""
+            self._sought = wanted
+            self._solving = Behind(self._settled)
+            self.go_on()
         self._seen = model.revision
+
+    def share_frames(self, elapsed: float) -> None:
+        """Let a window that has taken so long since its last frame (s) go on while something is solved."""
+        self.part = min(max(PART, _SHARE * elapsed), _MOST)
+        self.go_on()
+
+    def go_on(self, *, to_the_end: bool = False) -> None:
+        """Let what is being solved have its part of a frame; without a window, or to the end, all that it needs."""
+        solving, model = self._solving, self._model
+        if solving is None:
+            return
+        small = self.first_order and model.rods.count <= SMALL
+        with model.own_state():
+            if solving.part(math.inf if small or to_the_end else self.part):
+                self._solving, self._of = None, self._sought
+                self._take(solving)
+        if self._solving is None:
+            self.revision = model.next_revision()
+
+    def give_up(self) -> bool:
+        """Solve no more what is there now; False if it is solved."""
+        solving, self._solving = self._solving, None
+        if solving is not None:
+            solving.give_up()
+        return solving is not None
 
     def _wanted(self) -> tuple[object, ...]:
         """The revisions of all that a solution follows from; the second of them, that of the rows of tables."""
@@ -169,14 +206,18 @@ class Statics:
         self, theory: str | None = None, load_factors: Sequence[float] | float | None = None
     ) -> Settlement:
         """The way through load factors by a theory; None: those of the settings. Raises ValueError."""
+        with self._model.own_state():
+            return self._settled(theory, load_factors)
+
+    def _settled(
+        self, theory: str | None = None, load_factors: Sequence[float] | float | None = None
+    ) -> Settlement:
         from pinjoint.systems.statics.settle import settle
         from pinjoint.systems.statics.state import Start
 
         model, settings = self._model, self._model.settings
         factors = settings.load_steps if load_factors is None else load_factors
-        with model.own_state():
-            start = Start.undeformed(model, self._strain())
-            return settle(model, factors, theory or settings.theory, start)
+        return settle(model, factors, theory or settings.theory, Start.undeformed(model, self._strain()))
 
     def second_order(self, elapsed: float | None = None) -> str:
         """By how much, and where, the theories differ, where that is worth a word; "" of a large structure.
@@ -185,7 +226,9 @@ class Statics:
         another solution; None: at once.
         """
         settlement = self.settlement
-        if settlement is None or not settlement.final.balanced or self._model.rods.count > _MOST_COMPARED:
+        if self.is_late or settlement is None or not settlement.final.balanced:
+            return ""
+        if self._model.rods.count > _MOST_COMPARED:
             return ""
         if elapsed is not None:
             self._rest = self.revision, self._rest[1] + elapsed if self._rest[0] == self.revision else 0.0
@@ -194,7 +237,13 @@ class Statics:
         if self._compared[0] != self.revision:
             from pinjoint.systems.statics.second_order import SecondOrder
 
-            other = self.settled(EXACT if self.first_order else FIRST_ORDER)
+            theory = EXACT if self.first_order else FIRST_ORDER
+            if self._comparing is None or self._comparing[0] != self.revision:
+                self._comparing = self.revision, Behind(partial(self._settled, theory))
+            with self._model.own_state():
+                if not self._comparing[1].part(math.inf if elapsed is None else self.part):
+                    return ""
+            other = self._comparing[1].result()
             both = (settlement, other) if self.first_order else (other, settlement)
             rests = other.final.balanced
             found = SecondOrder.of(self._model, *(one.final for one in both)) if rests else None
@@ -205,7 +254,7 @@ class Statics:
         if compared is not None and not compared.final.balanced and self.first_order:
             said = tr("exact: {status}", status=tr(compared.status))
         beyond = tr("above the critical load factor {factor}", factor=written.number(critical))
-        return joined([beyond if critical < self.share else "", said], "; ")
+        return beyond if critical < self.share else said
 
     def _critical(self, exact: Settlement) -> float:
         """The load factor at which the structure buckles, by linear buckling or on its way in exact geometry."""
@@ -218,16 +267,15 @@ class Statics:
             factors += Buckling.of(model, 1).factors.tolist()
         return min(factors, default=np.inf)
 
-    def _find(self) -> None:
-        model = self._model
+    def _take(self, solved: Behind[Settlement]) -> None:
         try:
-            self._settlement, self.problem = self.settled(), ""
+            self._settlement, self.problem = solved.result(), ""
         except ValueError as error:
             self._settlement, self.problem, self.motion = None, str(error), None
             self._columns = {}
             return
         self._columns = self._shown(self._settlement.final)
-        self.motion = last_motion(model, self._settlement)
+        self.motion = last_motion(self._model, self._settlement)
 
     def _shown(self, state: StaticState) -> Mapping[str, Column]:
         """What columns show of a state, by "table.field"."""

@@ -155,7 +155,7 @@ def _equilibrium(context: Context) -> Iterator[Readout]:
         yield Readout(title, (*rows, *_sums(forces)))
     if not chosen:
         shown = [
-            (f"{particle.name} {title}" if title else "", total)
+            (f"{particle.said} {title}" if title else "", total)
             for particle in list(model.particles)[:MOST_JOINTS]
             for title, total in _sums(on_joint(model, particle.row))
         ]

@@ -17,7 +17,6 @@ from pinjoint.components.settings import PAUSE
 from pinjoint.components.tags import Hovered
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
-from pinjoint.documents.statics import LARGE
 from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import DrawRod
 from pinjoint.editor.gestures.moving import Placing
@@ -61,7 +60,8 @@ def show(context: Context, elapsed: float) -> None:
     view, scene = context.view, context.scenes.active
     solved, statics = context.model.solution is not None, context.document.statics
     view.steady = isinstance(context.gesture, Placing)
-    statics.waits = view.steady and context.window is not None and context.model.rods.count > LARGE
+    if context.window is not None and context.footer is None:
+        statics.share_frames(elapsed)
     view.forces_known = solved or context.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
@@ -260,11 +260,11 @@ def _end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
     if found is None:
         return None
     rod, end = found
-    at, particle = ring_of(model, view, rod, end), rod.ends[end].name
+    at, particle = ring_of(model, view, rod, end), rod.ends[end].said
     label = (
-        tr("hinge {rod} at {particle}", rod=rod.name, particle=particle)
+        tr("hinge {rod} at {particle}", rod=rod.said, particle=particle)
         if is_rigid(rod, end)
-        else tr("make {rod} rigid at {particle}", rod=rod.name, particle=particle)
+        else tr("make {rod} rigid at {particle}", rod=rod.said, particle=particle)
     )
     return Preview("hinge", at, at, label)
 

@@ -138,7 +138,7 @@ class Probes:
 
     def _sample_statics(self, session: Context) -> None:
         statics = session.document.statics
-        if statics.settlement is None or session.gesture is not None:  # a drag goes on
+        if statics.settlement is None or statics.is_late or session.gesture is not None:  # a drag goes on
             return
         behind = [probe for probe in self.of(session) if probe.solved != statics.revision]
         for number, _ in enumerate(statics.on_the_way(PARTS) if behind else ()):

@@ -26,7 +26,6 @@ class Collision(StepSystem):
     reads = ("particles.radius", "particles.mobility", "settings.restitution")
     writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
     impulsive = True
-    between = "pinjoint.systems.collision.driven.neighbours:BETWEEN"
 
     def needs(self, model: Model) -> bool:
         """True if there are two particles that a rod does not join, or one and an obstacle, of which one can move."""

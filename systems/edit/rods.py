@@ -44,14 +44,14 @@ def check_ends(model: Model, first: Particle, second: Particle) -> None:
         raise Refusal(
             "{rod} already joins {first} and {second}; choose two other particles.",
             rod=begun(model.describe(model.rods[row])),
-            first=first.name,
-            second=second.name,
+            first=first.said,
+            second=second.said,
         )
     if distance(first, second) == 0.0:
         raise Refusal(
             "{first} and {second} are at the same place; move one of them first.",
-            first=first.name,
-            second=second.name,
+            first=first.said,
+            second=second.said,
         )
 
 
@@ -92,7 +92,7 @@ def share_at(rod: Rod, point: Vector) -> float:
 
 def toggle_hinge(model: Model, rod: Rod, end: int) -> str:
     """Hinge an end of a rod, or make it rigid; returns what it is now. A bar that did not bend gets the usual section."""
-    name, particle = model.describe(rod), rod.ends[end].name
+    name, particle = model.describe(rod), rod.ends[end].said
     if is_rigid(rod, end):
         set_rigid(model, [(rod, end)], False, tr("hinge of {rod}", rod=name))
         return tr("hinged at {particle}", particle=particle)
@@ -104,7 +104,7 @@ def toggle_joint(model: Model, particle: Particle) -> str:
     """Hinge all rods' ends at a particle, or make them rigid if they are hinged; returns what they are now."""
     rows = np.argwhere(model.rods.between == particle.row).tolist()
     if not rows:
-        raise Refusal("No rod ends at {particle}; choose an end of a rod to hinge it.", particle=particle.name)
+        raise Refusal("No rod ends at {particle}; choose an end of a rod to hinge it.", particle=particle.said)
     ends, name = [(model.rods[row], end) for row, end in rows], model.describe(particle)
     if any(is_rigid(*end) for end in ends):
         set_rigid(model, ends, False, tr("hinges at {particle}", particle=name))

@@ -139,7 +139,7 @@ def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Reading]:
     bends = rods.bending_stiffness[row] > 0.0
     if not (bends or rods.distributed_force[row].any()):
         return
-    ends = [particle.name for particle in columns.model.rods[int(row)].ends]
+    ends = [particle.said for particle in columns.model.rods[int(row)].ends]
     ends = (
         ends if max(map(len, ends)) <= SHORT else [tr_in("end of a rod", "start"), tr_in("end of a rod", "end")]
     )

@@ -11,6 +11,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.systems.islands import Rows
 from pinjoint.systems.physics.bending import bending_energy, bowing_work, levers
+from pinjoint.systems.physics.kernels import LOST_UNSEEN, REST_RESIDUAL, SMALL_SHARE
 from pinjoint.systems.program.entries import MEASURED, Measure
 
 Array = NDArray[np.float64]
@@ -82,11 +83,6 @@ class RestMeasure:
         of_particle, of_rod: the island of each. force_scale (kN), energy_scale (J): of the clock, one for all islands
         or one for each.
         """
-        from pinjoint.systems.physics.kernels import (  # imports numba, with the first program
-            REST_RESIDUAL,
-            SMALL_SHARE,
-        )
-
         count = int(of_particle.max(initial=0)) + 1
         largest = _largest(count, (of_particle, self.load), (of_rod, self.pull))
         round_off = _largest(count, (of_rod, self.round_off))
@@ -123,8 +119,6 @@ def rests_unseen(measures: Array, lost: float, damped: float, energy_scale: floa
 
     measures: as of Program. lost: by the steps (J). damped: taken by dampers and drag (J).
     """
-    from pinjoint.systems.physics.kernels import LOST_UNSEEN
-
     residual, largest = measures[Measure.RESIDUAL], measures[Measure.LARGEST_FORCE]
     is_still = residual <= UNSEEN * largest and measures[Measure.KINETIC] <= UNSEEN**2 * energy_scale
     return bool(is_still and lost <= damped + LOST_UNSEEN * energy_scale)

@@ -9,15 +9,12 @@ from collections.abc import Iterable, Sequence
 
 from pinjoint.systems.program.binding import Bound, StepRole
 from pinjoint.systems.program.entries import ACCOUNTS
-from pinjoint.systems.program.loops import RodLoop
 from pinjoint.systems.program.pasting import indented
 from pinjoint.systems.program.writer import PREDICTED, RESISTED, TRIAL_STATE, Writer, accounts_of
 
-_RODS = "block_rods[block], block_rods[block + 1]"
 _PARTICLES = "first, last"
 _LIMITS = ("first = np.uint64(block_particles[block])", "last = np.uint64(block_particles[block + 1])")
 _COMPLETED = f"{TRIAL_STATE}, predicted"
-_MOVED = f"{_COMPLETED}, ending"
 
 
 class BlockWriter(Writer):
@@ -28,6 +25,7 @@ class BlockWriter(Writer):
     """
 
     BLOCK = ("block_particles", "block_rods", "block_cores")
+    rows = "block_rods[block], block_rods[block + 1]"
 
     def _add_columns(self, bound: Iterable[Bound]) -> None:
         super()._add_columns(bound)
@@ -35,12 +33,6 @@ class BlockWriter(Writer):
 
     def _head(self) -> str:
         return super()._head() + "from pinjoint.systems.program.kernel import prange, shared\n"
-
-    def _rod_loop(self, loop: RodLoop) -> list[str]:
-        return loop.in_stages(self._is_float, _RODS)
-
-    def _short_rod_loop(self, loop: RodLoop) -> list[str]:
-        return loop.one_by_one(_RODS)
 
     def _forces(self, name: str, commits: Sequence[Bound]) -> str:
         accounts = accounts_of(commits)
@@ -62,39 +54,25 @@ class BlockWriter(Writer):
         return _of_block("resist", RESISTED, body) + _of_all("resist", RESISTED, ", power", _gains())
 
     def _of_steps(self) -> list[str]:
-        """Steps in one part that cores share, which ends a step and begins the next; or in two, if accounts gain."""
+        """What begins steps, and what ends them if anything is left to do then, in parts that cores share."""
         ends, begins = (
             self._particles(where, _PARTICLES) for where in (self.integrator.ends, self.integrator.begins)
         )
         losses = [*_losses(accounts_of(self.commits)), *self._pushes()]
-        accept = _call("accept", "block", PREDICTED)
-        between = ["if ending:", *indented(ends)] if self._waits else []
-        parts = [_shared("move", _MOVED, [*between, *begins, accept], ", account", losses)]
+        accept, resist = _call("accept", "block", PREDICTED), _call("resist", "block", RESISTED)
+        parts = [_shared("move", _COMPLETED, [*begins, accept], ", account", losses)]
         if self.powers:
-            resist = _call("resist", "block", RESISTED)
             parts.append(_shared("complete", _COMPLETED, [*ends, resist], ", power", _gains()))
+        elif ends:
+            parts.append(_shared("complete", _COMPLETED, ends, "", []))
         return [*super()._of_steps(), *parts]
 
-    @property
-    def _waits(self) -> bool:
-        """Whether a step waits for the next one to be completed with it."""
-        return not self.powers and bool(self._particles(self.integrator.ends))
-
-    def _begin(self) -> list[str]:
-        return ["waiting = False", "dt = 0.0"]
-
     def _move(self) -> list[str]:
-        waiting = ["waiting = True"] if self._waits else []
-        return [f"move({_MOVED.replace('ending', 'waiting')}, account, *columns)", *waiting]
+        return [f"move({_COMPLETED}, account, *columns)"]
 
     def _accelerate(self) -> list[str]:
-        return self._gains("complete", _COMPLETED) if self.powers else self._complete("not whole")
-
-    def _complete(self, condition: str) -> list[str]:
-        if not self._waits:
-            return []
-        known = " and ".join(["waiting", *([condition] if condition else [])])
-        return [f"if {known}:", *indented([*self._particles(self.integrator.ends), "waiting = False"])]
+        ends = [f"complete({_COMPLETED}, *columns)"] if self.integrator.ends else []
+        return self._gains("complete", _COMPLETED) or ends
 
 
 def _call(name: str, block: str, given: str) -> str:

@@ -15,22 +15,19 @@ import pickle
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
 from enum import Enum
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
-from pinjoint.components.field import Column
 from pinjoint.components.language import begun, tr
 from pinjoint.components.mistake import Mistake
-from pinjoint.components.model import Model
 from pinjoint.systems.program import cache
 from pinjoint.systems.program.binding import ProgramError
 from pinjoint.systems.program.identity import key_of, reached_from
-from pinjoint.systems.program.interpreter import NoPlainForm, Rewriting, in_lists, plain_function, rewrite
+from pinjoint.systems.program.interpreter import NoPlainForm, Rewriting, plain_function, rewrite
 from pinjoint.systems.program.kernel import Kernel, Use
 
 # --- which form ------------------------------------------------------------------------------------
@@ -378,29 +375,6 @@ def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str
         arguments = ", ".join(inspect.signature(plain_function(kernel)).parameters)
         lines += ["", "", "@entry", f"def {name}({arguments}):", f"    return kernel_{name}({arguments})"]
     return "\n".join([*lines, ""]), {f"kernel_{name}": kernel for name, kernel in kernels.items()}
-
-
-@dataclass(frozen=True)
-class Between:
-    """Kernels that step programs call by their addresses, so that they are compiled once for all of them.
-
-    module: holds the kernels, by their names. idle: arrays of the kernels with which nothing happens between steps.
-    support: the forces on particles (kN) that last from the step that led to the present state.
-    """
-
-    module: GeneratedModule
-    kernels: Sequence[Kernel]
-    idle: Callable[[], Any]
-    support: Callable[[Model], Column]
-
-    def functions(self, *, compiled: bool) -> list[Any]:
-        """The kernels in one of their forms, to hand to a program in the same."""
-        if compiled:
-            from pinjoint.systems.program.machine_code import addressed
-
-            form = self.module.form if self.module.is_loaded else self.module.load()
-            return [addressed(getattr(form, kernel.py_func.__name__)) for kernel in self.kernels]
-        return [in_lists(kernel) for kernel in self.kernels]
 
 
 # --- calls that do not end ---------------------------------------------------------------------------

@@ -7,6 +7,7 @@ from typing import Any
 
 from pinjoint.components.model import Model
 from pinjoint.systems.base import Integrator, StepSystem
+from pinjoint.systems.physics.kernels import lowest
 from pinjoint.systems.program.binding import Bound, StepRole, bind
 from pinjoint.systems.program.entries import Mark
 from pinjoint.systems.program.loops import RodLoop
@@ -21,10 +22,6 @@ class ControlledWriter(Writer):
     """Writes step programs whose integrator needs powers at every stage, events and tangents."""
 
     def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
-        from pinjoint.systems.physics.kernels import (
-            lowest,  # imports numba, when a program is built, not before
-        )
-
         super().__init__(model, systems, integrator, form)
         self.branches = [(bind(s, model, "branch"), bind(s, model, "margin")) for s in self.branching]
         self.names |= {b.call: b.function for pair in self.branches for b in pair} | {"lowest": lowest}
@@ -51,12 +48,7 @@ class ControlledWriter(Writer):
         return [*parts, self._tangent()] if self.integrator.rod_rows else parts
 
     def _steps(self) -> dict[str, list[str]]:
-        return {
-            "present": self.lines(forces.present),
-            "begin": [],
-            "step": self.lines(runge_kutta.step),
-            "finish": [],
-        }
+        return {"present": self.lines(forces.present), "step": self.lines(runge_kutta.step)}
 
     def _remember(self) -> str:
         compute, lost = self._histories(self.commits)

@@ -20,11 +20,12 @@ from pinjoint.components.model import Model
 from pinjoint.systems.base import Event, Integrator, StepSystem, StopReason
 from pinjoint.systems.collision.columns import Grid
 from pinjoint.systems.collision.driven.columns import Phase, Real, Whole
+from pinjoint.systems.collision.driven.neighbours import DRIVEN, between_steps, idle, lasting_forces
 from pinjoint.systems.physics.bending import arm_of, levers
 from pinjoint.systems.physics.kernels import conserved
-from pinjoint.systems.program.binding import Bound, ProgramError, StepRole, bind, find
+from pinjoint.systems.program.binding import Bound, ProgramError, StepRole, bind
 from pinjoint.systems.program.block_writer import BlockWriter
-from pinjoint.systems.program.compiler import Between, GeneratedModule, generated
+from pinjoint.systems.program.compiler import GeneratedModule, generated
 from pinjoint.systems.program.controlled_writer import ControlledWriter
 from pinjoint.systems.program.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
 from pinjoint.systems.program.faults import check_plain_forms, explain
@@ -66,18 +67,12 @@ def module_of(
     model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str
 ) -> GeneratedModule:
     """The module of the program of a plan, in that form, which is only written."""
-    return _module(_writer(model, systems, integrator, form), _between(systems))
+    return _module(_writer(model, systems, integrator, form))
 
 
-def _module(writer: Writer, between: Between | None) -> GeneratedModule:
-    needs = (between.module,) if between is not None else ()
+def _module(writer: Writer) -> GeneratedModule:
+    needs = (DRIVEN,) if writer.collides else ()
     return generated(marked("the step program"), writer.source(), writer.names, needs)
-
-
-def _between(systems: Iterable[StepSystem]) -> Between | None:
-    """What acts between the steps of a program of these systems."""
-    found: list[Any] = [find(system.between, system) for system in systems if system.between]
-    return found[0] if found else None
 
 
 class Coordinates(NamedTuple):
@@ -113,7 +108,7 @@ class Program:
     resists_motion: something depends on velocity: dampers or drag. watches_events: it stops where the quantity of an Event
     changes sign.
     failure: what a kernel raised in a step, and which, if one did.
-    plan: the step systems that it was asked for. between: what acts between its steps.
+    plan: the step systems that it was asked for.
     module: its functions. tolerance: of each step; 0 where the error is not controlled.
     compile_seconds: time that writing it took, and compiling it, or loading it from the cache, if that was done at once.
     """
@@ -125,8 +120,7 @@ class Program:
         self.integrator = integrator
         self.form = form
         self._writer = _writer(model, systems, integrator, form)
-        self.between = _between(systems)
-        self.module = _module(self._writer, self.between)
+        self.module = _module(self._writer)
         self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self.lasting = next((b.system.name for b in self._writer.bound if b.follows_time), "")
@@ -185,11 +179,11 @@ class Program:
         extra |= self._arranged(extra)
         self._near = NearPairs(model, [b.cutoff for b in self._writer.pairs]) if self._writer.pairs else None
         extra |= self._near.arrays if self._near is not None else {}
-        if self.between is not None:
+        if self._writer.collides:
             shape = self._rows("particles"), self._writer.coordinates
             extra |= {name: np.zeros(shape) for name in PUSHED}
             self._support = extra["support"][:, :2]
-            self._support[:] = self.between.support(model)[self._held_rows]
+            self._support[:] = lasting_forces(model)[self._held_rows]
         self._arm = arm_of(model) if self._writer.bends else 1.0
         if self._writer.bends:
             self._stop_turning()
@@ -357,7 +351,7 @@ class Program:
         return tuple(known[name] for name in names[names.index(first) + 1 : -len(self.columns)])
 
     def _bind_arguments(self) -> None:
-        if self.between is None:
+        if not self._writer.collides:
             self._arguments = (*self._after("loads_end", "advance"), *self.columns.values())
             return
         known = self._arrays | self.columns
@@ -428,7 +422,7 @@ class Program:
     def _take(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         """Take up to `steps` steps, in one call."""
         self._catch_up()
-        if self.between is not None:
+        if self._writer.collides:
             real = self._idle[0].real
             real[Real.UNTIL], real[Real.END] = until, landing
             return self._enter(self._idle, steps, alone=True)
@@ -484,7 +478,6 @@ class Program:
     def _enter(self, arrays: Any, steps: int, *, alone: bool) -> tuple[int, StopReason]:
         """Enter the program with these arrays; returns how many steps it took, and why it stopped."""
         form, driven = self._ready(), arrays[0]
-        assert self.between is not None
         whole, (total, since) = driven.whole, self._counts.tolist()
         origin, limit = self._origin.tolist()
         limit = limit or math.inf
@@ -495,7 +488,7 @@ class Program:
             whole[Whole.REASON] = StopReason.DONE
         driven.real[Real.ORIGIN] = origin
         form.drive(
-            *self.between.functions(compiled=form.is_machine),
+            *between_steps(compiled=form.is_machine),
             *arrays,
             *self._motion,
             self.tolerance,
@@ -514,8 +507,7 @@ class Program:
     @cached_property
     def _idle(self) -> Any:
         """Arrays with which steps are taken as if nothing could meet."""
-        assert self.between is not None
-        return self.between.idle()
+        return idle()
 
     @property
     def _held_rows(self) -> Any:
@@ -562,8 +554,8 @@ class Program:
             self._failed(error)
 
     def _observe(self) -> None:
-        if self.between is not None and not self._is_fresh:  # the state was put back, or changed
-            self._support[:] = self.between.support(self.model)[self._held_rows]
+        if self._writer.collides and not self._is_fresh:  # the state was put back, or changed
+            self._support[:] = lasting_forces(self.model)[self._held_rows]
         time, size = self._control[:2].tolist()
         self._ready().observe(time, size, *self._observed, *self.columns.values())
         for coordinates in self._acting:

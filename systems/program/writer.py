@@ -36,7 +36,7 @@ from pinjoint.systems.program.binding import (
 )
 from pinjoint.systems.program.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
 from pinjoint.systems.program.interpreter import plain_function
-from pinjoint.systems.program.loops import RodLoop
+from pinjoint.systems.program.loops import ALL, RodLoop
 from pinjoint.systems.program.near_pairs import ARRAYS
 from pinjoint.systems.program.pasting import Insert, expanded, fragment, indented, pasted, source_of
 from pinjoint.systems.program.templates import driven, events, fixed_steps, forces, observing, rods, steps
@@ -135,8 +135,11 @@ class Writer:
     """Writes the source of one step program from the bound systems of a plan.
 
     names: what the source refers to, kernels and enumerations. rates: something depends on velocity. powers: some
-    account gains by the step. working: laws of rods whose force is no part of the elastic energy.
+    account gains by the step. working: laws of rods whose force is no part of the elastic energy. rows: those of rods that
+    one loop of a step goes over: the first, and that after the last.
     """
+
+    rows = ALL
 
     def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
         self.model = model
@@ -455,10 +458,7 @@ class Writer:
     # --- rods -------------------------------------------------------------------------------------
 
     def _rod_loop(self, loop: RodLoop) -> list[str]:
-        return loop.one_by_one() if self.form == FEW else loop.in_stages(self._is_float)
-
-    def _short_rod_loop(self, loop: RodLoop) -> list[str]:
-        return loop.one_by_one()
+        return loop.one_by_one(self.rows) if self.form == FEW else loop.in_stages(self._is_float, self.rows)
 
     def _is_float(self, name: str) -> bool:
         """Whether an array with a row for each rod holds floating-point numbers."""
@@ -607,7 +607,7 @@ class Writer:
             else:  # too little is computed to gain from stages
                 axis = RodLoop({}, ["nx = direction[r, 0]", "ny = direction[r, 1]"])
                 axis += RodLoop({}, ["inverse = direction[r, 2]"] if self.bends else [])
-                body += self._short_rod_loop(axis + drag)
+                body += (axis + drag).one_by_one(self.rows)
         return body
 
     # --- steps ------------------------------------------------------------------------------------
@@ -616,19 +616,8 @@ class Writer:
         """What the loop over steps does with this integrator."""
         return {
             "present": self.lines(forces.present),
-            "begin": self._begin(),
-            "step": self.lines(
-                fixed_steps.step,
-                complete=self._complete("not whole"),
-                displacement=self._move(),
-                velocity=self._accelerate(),
-            ),
-            "finish": self._complete(""),
+            "step": self.lines(fixed_steps.step, displacement=self._move(), velocity=self._accelerate()),
         }
-
-    def _begin(self) -> list[str]:
-        """The lines before the first step."""
-        return []
 
     def _move(self) -> list[str]:
         """The lines that lead to the next displacement, and give its forces."""
@@ -637,10 +626,6 @@ class Writer:
     def _accelerate(self) -> list[str]:
         """The lines that lead to the next velocity, and give what resists it."""
         return [*self._particles(self.integrator.ends), *self._gains("resist", RESISTED)]
-
-    def _complete(self, condition: str) -> list[str]:
-        """The lines that complete a step which waits for the next one, under a condition."""
-        return []
 
     def _particles(self, where: str, span: str = EVERY) -> list[str]:
         """A loop in which the integrator moves every particle; none where it has nothing to do."""

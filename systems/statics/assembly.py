@@ -1,7 +1,7 @@
 """Assembly: matrices of structures as sums of those of their rods, full or sparse.
 
 It is kept for the last structures, since a hand that drags changes neither rods nor unknowns: a frame of 104 members is
-solved in 3.6 ms in place of 5.
+solved in 3 ms in place of 4.6.
 """
 
 from __future__ import annotations

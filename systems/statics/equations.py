@@ -25,6 +25,7 @@ from pinjoint.components.table import flags
 from pinjoint.components.theory import EXACT, FIRST_ORDER, THEORIES
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import Assembly, Matrix, spread_by_ends
+from pinjoint.systems.statics.behind import rest
 from pinjoint.systems.statics.bending import Bending, Bent
 
 if TYPE_CHECKING:  # only large structures need it
@@ -370,6 +371,7 @@ class Structure:
 
         share: of the distributed forces that acts between the ends.
         """
+        rest()
         change = self.relative(displacement)
         stretch, axis, length = self._stretch(change)
         elongation = stretch + self.misfit

@@ -10,8 +10,9 @@ from pinjoint.components import written
 from pinjoint.components.bent import farthest
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
-from pinjoint.components.rod import nodes
-from pinjoint.components.wording import cut
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, nodes
+from pinjoint.components.wording import as_said, cut
 from pinjoint.systems.statics.equations import Array, largest
 from pinjoint.systems.statics.state import StaticState
 
@@ -67,5 +68,7 @@ class SecondOrder:
 
 def _name(model: Model, quantity: str, row: int, end: int | None = None) -> str:
     if quantity == "largest_moment":
-        return model.rods.names[row]
-    return model.particles.names[row if end is None else int(model.rods.between[row, end])]
+        return as_said(Rod.noun, model.rods.names[row])
+    return as_said(
+        Particle.noun, model.particles.names[row if end is None else int(model.rods.between[row, end])]
+    )

@@ -4,8 +4,10 @@ import pytest
 
 from pinjoint.components.language import language, spoken
 from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
 from pinjoint.documents.preferences import preferred
 from pinjoint.editor.scenes.form import FormScene
+from pinjoint.results import Results
 from pinjoint.session import Session
 from pinjoint.systems.render.picture import compose_all
 from pinjoint.systems.render.theme import load_theme
@@ -74,6 +76,30 @@ def test_boxes_show_and_take_a_comma_in_portuguese_and_give_scripts_the_point():
         session.press("return")
         assert session.scenes.active.boxes["load x"] == "12.5"
     assert session.particles["B"].force[0] == 12.5
+
+
+def test_boxes_show_what_may_be_chosen_in_portuguese():
+    session = Session.open("gerber_beam")
+    with spoken("pt"):
+        session.select(session.rods["AB"])
+        session.act("properties")
+        scene = session.scenes.active
+        assert isinstance(scene, FormScene)
+        said = [box.said_text for box in scene.form.boxes]
+    assert {"estática", "primeira ordem"} <= set(said)
+
+
+def test_names_that_nobody_gave_are_read_in_the_present_language():
+    session = Session.open("collision_i")
+    session.model.create(Rod, between=[(0, 1)])
+    session.rods["rod 1"].bending_stiffness = 1.0
+    with spoken("pt"):
+        session.update_view()
+        texts = [text for picture in compose_all(session.stages, load_theme()) for text in picture.texts]
+        assert {"barra 1", "partícula 1", "partícula 2"} <= set(texts)
+        assert session.model.describe(session.rods["rod 1"]) == "barra 1"
+        assert Results.of(session.model).particles.names == ["partícula 1", "partícula 2"]
+        assert session.rods["rod 1"].name == "rod 1", "files and scripts are the same in every language"
 
 
 def test_undo_says_in_the_present_language_what_was_done_in_another():

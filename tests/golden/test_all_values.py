@@ -123,12 +123,15 @@ def unreadable(session: Session, model: Model, view: View) -> Iterator[str]:
     """What cannot be read in a picture or the table beside it, or stands at something else; advice in a file."""
     picture = compose(model, view, LIGHT)
     found, listed = told(picture, model)
+    crowded = (
+        view.shares and view.canvas.height < 500 and model.rods.count > FEW
+    )  # a panel leaves no room for a list
     yield from misplaced(picture, model)
     if view.table[0]:
         assert session.lister.tables["rods"].names == model.rods.names
         texts = compose(session.lister.listing, view, LIGHT).texts
         yield from (text for text in texts if "…" in text and text[0] in "−0123456789")
-    elif model.rods.count < TOO_MANY or view.canvas.width > WIDE:
+    elif (model.rods.count < TOO_MANY and not crowded) or view.canvas.width > WIDE:
         yield from missing(model, view.quantity, found)
         yield from (text for text in picture.texts if "hidden" in text)
         if (

@@ -165,7 +165,7 @@ def _draw(context: Context, tool: str, pixel: Vector) -> None:
 @action("escape", "escape", "put the tool away, or pause", (SIMULATION,), while_drawing=True)
 def _escape(context: Context, pixel: Vector) -> None:
     """Cancel the drawing, else put the tool away, else hide a shape, else end the run or deselect."""
-    if _cancel(context):
+    if _cancel(context) or context.document.statics.give_up():
         return
     if context.document.shapes.shown is not None:
         context.document.shapes.hide()

@@ -50,6 +50,7 @@ def _begin_from_statics(context: Context) -> bool:
     """
     model, statics = context.model, context.document.statics
     moving = model.tables["particles"].storage("velocity").any() or not nodes(model).all()
+    statics.go_on(to_the_end=True)
     if statics.offered == statics.revision:
         context.restart()
         return True

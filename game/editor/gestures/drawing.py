@@ -92,7 +92,7 @@ class DrawRod(Drawing):
     def say(self, context: Context) -> None:
         """Let the hint name the kind of rod that is drawn."""
         step = (
-            tr("rod from {particle}: click where it ends (or L)", particle=self.origin.name)
+            tr("rod from {particle}: click where it ends (or L)", particle=self.origin.said)
             if isinstance(self.origin, Particle)
             else tr("rod: click where it ends (or L)")
         )
@@ -176,7 +176,7 @@ class DrawArrow(Drawing):
         super().__init__(context, origin)
         self.elements: list[Any] = [*elements] or [origin]
         alone = len(self.elements) == 1
-        named = self.elements[0].name if alone else heading(context.model, self.elements)
+        named = self.elements[0].said if alone else heading(context.model, self.elements)
         self.hint = tr(self.asks, particle=named, rods=named)
 
     def value(self, context: Context, pixel: Vector) -> Any:
@@ -191,7 +191,7 @@ class DrawArrow(Drawing):
         value, elements = self.value(context, pixel), [one for one in self.elements if one.exists]
         if elements:
             context.model.assign(elements, self.field, [value] * len(elements))
-            named, rods = elements[0].name, begun(heading(context.model, elements))
+            named, rods = elements[0].said, begun(heading(context.model, elements))
             said = self.shown(value)
             context.notice = tr(self.says, particle=named, rods=rods, value=said, load=said)
 
@@ -250,7 +250,7 @@ class DrawMoment(DrawArrow):
             raise Refusal(
                 "A moment cannot act on {particle}, where no rod is rigidly joined. Ctrl+J makes the end of a rod"
                 " rigid.",
-                particle=particle.name,
+                particle=particle.said,
             )
         super().__init__(context, particle)
 
@@ -278,7 +278,7 @@ class DrawVelocity(DrawArrow):
     def __init__(self, context: Context, particle: Particle) -> None:
         if all(particle.fixed):
             raise Refusal(
-                "{particle} is held in x and y and cannot move; C changes its support.", particle=particle.name
+                "{particle} is held in x and y and cannot move; C changes its support.", particle=particle.said
             )
         super().__init__(context, particle)
 

@@ -70,7 +70,7 @@ class Move(Placing):
         self._movable.place(self._start + np.subtract(target, self._start[self._leader]))
         particles, others, count = self._movable.particles, self._movable.others, len(self._movable)
         leader: Any = particles[self._leader] if self._leader < len(particles) else others[0]
-        named = leader.name
+        named = leader.said
         if count > 1:
             named = tr("{element} and {count} more", element=named, count=count - 1)
         return tr("{element}: {value}", element=named, value=written.place(target, written.DIGITS))

@@ -20,8 +20,9 @@ from pinjoint.systems.collision.driven.columns import Driven, Listing, Order, Ph
 from pinjoint.systems.collision.driven.kernels.neighbours import list_pairs
 from pinjoint.systems.collision.driven.kernels.steps import collide
 from pinjoint.systems.collision.system import fall_time, persistent_contacts
-from pinjoint.systems.program.compiler import Between, GeneratedModule, entries_to
+from pinjoint.systems.program.compiler import GeneratedModule, entries_to
 from pinjoint.systems.program.entries import Account, Control
+from pinjoint.systems.program.interpreter import in_lists
 
 CONTACTS = 8  # room at first
 STEP_SHARE = 0.04  # longest step of crowds: of the time in which a disc falls through its diameter
@@ -190,7 +191,7 @@ class NeighbourList:
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     """The source, and the kernels by the names that it calls them."""
     source, kernels = entries_to({"collide": collide, "list_pairs": list_pairs})
-    layout = [_layout(arrays) for arrays in _idle()]  # what is kept on disk is of no use for another
+    layout = [_layout(arrays) for arrays in idle()]  # what is kept on disk is of no use for another
     return f"{source}# arrays: {layout}\n", kernels
 
 
@@ -201,12 +202,13 @@ def _layout(arrays: Any) -> Any:
     return [(name, _layout(held)) for name, held in zip(arrays._fields, arrays, strict=True)]
 
 
-def _idle() -> tuple[Driven, Listing]:
-    """Arrays of no particles."""
+def idle() -> tuple[Driven, Listing]:
+    """Arrays of no particles, with which nothing can meet."""
     return Driven.empty({}, 0, 0, 0), Listing.empty(np.zeros((0, 2), dtype=np.int64), 0, 0)
 
 
-def _support(model: Model) -> Column:
+def lasting_forces(model: Model) -> Column:
+    """The forces of contacts on particles (kN) that last from the step that led to the present state."""
     contacts, particles = persistent_contacts(model), model.particles
     total = np.zeros((particles.count, 2))
     if contacts is not None:
@@ -227,8 +229,17 @@ def _warm_up() -> None:
     near = NeighbourList(model)
     near.look_up()
     near.list_within(0.0)
-    DRIVEN.form.collide(_idle()[0], np.zeros(len(Control)), np.zeros(len(Account)), none, none)
+    DRIVEN.form.collide(idle()[0], np.zeros(len(Control)), np.zeros(len(Account)), none, none)
 
 
 DRIVEN = GeneratedModule("driven_collisions", _contents, _warm_up)
-BETWEEN = Between(DRIVEN, (collide, list_pairs), _idle, _support)
+
+
+def between_steps(*, compiled: bool) -> list[Any]:
+    """What step programs call between their steps, in the form that they have: by address, so that it is compiled once."""
+    if not compiled:
+        return [in_lists(kernel) for kernel in (collide, list_pairs)]
+    from pinjoint.systems.program.machine_code import addressed
+
+    form = DRIVEN.form if DRIVEN.is_loaded else DRIVEN.load()
+    return [addressed(form.collide), addressed(form.list_pairs)]

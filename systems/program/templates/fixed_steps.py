@@ -68,7 +68,6 @@ def step():
     after it anew. The work of varying loads is their mean force times the displacement.
     """
     whole = end == goal and not inside
-    insert(complete)
     began = time
     dt = size if whole else end - time
     time = end

@@ -56,7 +56,6 @@ def advance(
     time = control[Control.TIME]
     if ALIKE:
         inside = False
-        insert(begin)
     else:
         search[Search.LIMIT] = limit
     rounding = SLACK * (until - time)
@@ -86,7 +85,6 @@ def advance(
             taken += 1
             now = total + taken
             if is_check_due(now, counted):
-                insert(finish)
                 measure(displacement, velocity, force, resisting, measures, *columns)
                 if FORESEES:
                     for i in range(displacement.shape[0]):
@@ -102,9 +100,7 @@ def advance(
                     measure(displacement, velocity, insert(force), resisting, measures, *columns)
                     account[Account.GUARD_ENERGY] = conserved(measures, account, size, SHADOW)
             if now % REVIEW_INTERVAL == 0:
-                insert(finish)
                 return taken, StopReason.REVIEW.value
         if happening:
             return taken, StopReason.EVENT.value
-    insert(finish)
     return taken, StopReason.DONE.value

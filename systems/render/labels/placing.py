@@ -15,7 +15,7 @@ import numpy as np
 
 from pinjoint.systems.render.labels.nearness import NOBODY, Boxes, Codes, ranges, within
 from pinjoint.systems.render.labels.occupancy import FAINT, STRONG, Occupancy
-from pinjoint.systems.render.marks import Discs, Mark, Owner, Panel, Points, Rows, Strokes, Text, Truths
+from pinjoint.systems.render.marks import Discs, Mark, Owner, Panel, Points, Rows, Strokes, Text, Truths, Values
 from pinjoint.systems.render.theme import Colour, faded
 from pinjoint.systems.render.typography import font_size, line_height, text_width
 
@@ -155,8 +155,10 @@ class _Placing:
         sources = zip(held, np.where(led, anchor, place).tolist(), led.tolist(), strict=True)
         lists = ((n.anchors if by_line else n.places, k) for n, k, by_line in sources)
         ends = np.array([points[min(k, len(points) - 1)] for points, k in lists])
-        ways = self._ways(np.array([n.outward for n in held]), half, _LENGTHS)[np.arange(len(held)), way]
-        middle = ends + np.where(led[:, None], ways, 0.0)
+        length, turn = np.divmod(way[:, None], len(_TURNS))
+        outward = np.array([n.outward for n in held])
+        ways = self._ways(outward, half, _TURNS[turn], np.array(_LENGTHS)[length])
+        middle = ends + np.where(led[:, None], ways[:, 0], 0.0)
         inside = within(middle, low + half, high - half)
         free = ~(led & (middle != inside).any(axis=1))
         cells = self.occupancy.cells_of(inside - half, 2.0 * half).tolist()
@@ -206,7 +208,9 @@ class _Placing:
             return []
         half, (own, kin), before = self._halves(labels), _codes(labels, self.occupancy), self._before(labels)
         which, anchor, turn, ends = _clear_ends(labels, turns, own, kin, self.occupancy)
-        ways = self._ways(np.array([n.outward for n in labels])[which], half[which], lengths)
+        turns_of_ways, lengths_of_ways = np.tile(_TURNS, len(lengths)), np.repeat(lengths, len(_TURNS))
+        outward = np.array([n.outward for n in labels])[which]
+        ways = self._ways(outward, half[which], turns_of_ways, lengths_of_ways)
         of, place = np.repeat(which, ways.shape[1]), np.arange(ways.shape[1])
         middle, end = (ends[:, None] + ways).reshape(-1, 2), np.repeat(ends, len(place), axis=0)
         place, turn = (_LED + _WAYS * anchor[:, None] + place).ravel(), np.repeat(turn, len(place))
@@ -273,11 +277,14 @@ class _Placing:
     def _halves(self, labels: Sequence[Label]) -> Points:
         return np.array([half_size(n.text, n.size, n.weight, self.unit) for n in labels])
 
-    def _ways(self, outward: Points, half: Points, lengths: Sequence[float]) -> Points:
-        """From ends of lines to the middles of labels, `half` their size, (n, k, 2); outward: which way is the best."""
-        angle = np.arctan2(outward[:, 1], outward[:, 0])[:, None] + np.tile(_TURNS, len(lengths))
+    def _ways(self, outward: Points, half: Points, turns: Values, lengths: Values) -> Points:
+        """From ends of lines of these lengths, (k,) or (n, k), to the middles of labels, `half` their size, (n, k, 2).
+
+        outward: which way is the best, from which they turn.
+        """
+        angle = np.arctan2(outward[:, 1], outward[:, 0])[:, None] + turns
         direction = np.stack([np.cos(angle), np.sin(angle)], axis=2)
-        reach = np.repeat(lengths, len(_TURNS)) * self.unit + (np.abs(direction) * half[:, None]).sum(axis=2)
+        reach = lengths * self.unit + (np.abs(direction) * half[:, None]).sum(axis=2)
         found: Points = direction * reach[:, :, None]
         return found
 

@@ -507,16 +507,14 @@ def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values, largest: float) -> 
 def _ends_of_lines(sheet: Sheet, diagram: _Diagram, which: Rows, shares: Values, ends: Rows) -> Points:
     """Where lines from values may end, (n, k, 2): on the edge of the diagram, in it, on the rod, then the same further along
     it, off the joint, where others begin, too."""
-    length = np.hypot(*(diagram.base.end - diagram.base.start)[which].T)
-    found = []
-    for from_end, between in _INSETS:
-        inset = np.array([from_end, -from_end, between])[ends] * sheet.unit / np.maximum(length, 1e-9)
-        along = shares + np.clip(inset, -0.4, 0.4)
-        along = np.clip(along, 0.0, 1.0)
-        at, normal = diagram.at(which, along)
-        height = diagram.scale * values(diagram.polynomials[which], along[:, None])
-        found += [at + share * height * normal for share in (1.0, 0.0, 0.5)]
-    return np.stack(found, axis=1)
+    length = np.hypot(*(diagram.base.end - diagram.base.start)[which].T)[:, None]
+    insets = np.array([(from_end, -from_end, between) for from_end, between in _INSETS])[:, ends].T
+    along = shares[:, None] + np.clip(insets * sheet.unit / np.maximum(length, 1e-9), -0.4, 0.4)
+    along = np.clip(along, 0.0, 1.0)
+    at, normal = _stations(diagram.base.some(which), along, diagram.side[which])
+    height = diagram.scale * values(diagram.polynomials[which], along)
+    up = np.array([1.0, 0.0, 0.5]) * height[..., None]
+    return (at[:, :, None] + up[..., None] * normal[:, :, None]).reshape(len(which), -1, 2)
 
 
 def _places_by_rectangles(

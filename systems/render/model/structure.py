@@ -92,8 +92,9 @@ def draw_deflected(sheet: Sheet) -> None:
         return
     rows, shares = np.arange(len(sheet.ends)), np.array([0.0, 0.5, 1.0])
     axes = Axes.of(model, rows, scale)
-    away = sheet.view.camera.scale * np.abs(axes.points(shares) - Axes.of(model, rows).points(shares))
-    if (away > _SHAPE_WIDTH * sheet.unit).any():
+    least = _SHAPE_WIDTH * sheet.unit / sheet.view.camera.scale
+    seen = np.abs(axes.start - model.particles.position[sheet.ends[:, 0]]).max(initial=0.0) > least
+    if seen or (np.abs(axes.points(shares) - Axes.of(model, rows).points(shares)) > least).any():
         start, end = _lines(sheet, axes, rows)
         sheet.occupancy.line(start, end, FAINT)
         sheet.explain("deflected", start, end)
@@ -290,7 +291,8 @@ def label_names(sheet: Sheet) -> None:
         wanted = np.arange(len(rows)) if all_of_them else np.flatnonzero(sheet.chosen(marked, rows))
         for index in wanted[:most].tolist():
             row = int(rows[index])
-            name, is_marked = sheet.model.tables[table].handles[row].name, row in marked
+            handle, is_marked = sheet.model.tables[table].handles[row], row in marked
+            name = handle.said
             size, weight = (sheet.font(12.0), "semibold") if is_marked else (sheet.font(11.0), "regular")
             half, key = np.array(half_size(name, size, weight, sheet.unit)), (f"{table}.name", row)
             of_particle = table == "particles"

@@ -95,7 +95,9 @@ class Text(Part):
 
     def size(self, u: float, width: float = math.inf) -> int:
         """The size of its type in pixels."""
-        sizes = [font_size(p, u) for p in (self.points if isinstance(self.points, tuple) else (self.points,))]
+        if not isinstance(self.points, tuple):
+            return font_size(self.points, u)
+        sizes = [font_size(p, u) for p in self.points]
         return next((size for size in sizes if text_width(self.text, size, self.weight) <= width), sizes[-1])
 
     def width(self, u: float) -> float:

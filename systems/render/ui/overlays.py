@@ -177,30 +177,22 @@ def put_notice(paper: Paper, sheet: Sheet, ends: tuple[float, float]) -> None:
     u, theme = sheet.unit, sheet.theme
     ink, ground = (theme.problem, theme.problem_panel) if status.problem else (theme.text, theme.panel)
     sign = Drawn(partial(_exclaimed, "!" if status.problem else "i", ink, ground), 18.0, 18.2)
-    for v in (sheet.view.room, sheet.viewport):  # beside the panels, unless it is long
-        room = min(v.width - 2 * EDGE * u, 640.0 * u)
-        most = max(int((min(bottom, v.bottom) - top - 60.0 * u) / line_height(sheet.font(13.0))), 1)
-        text = Text(said, 13.0, ink, lines=most, grow=1.0)
-        if text.height(u, room - _AROUND_NOTICE * u) <= _FEW_LINES * line_height(sheet.font(13.0)):
-            break
-    widest = max(
-        text_width(line, sheet.font(13.0))
-        for line in wrapped(said, room - _AROUND_NOTICE * u, sheet.font(13.0))
-    )
     offer = []
     if status.offer is not None and not status.problem:
         title, action = status.offer
-        offer = [
-            button(
-                Row((Text(title, 12.0, theme.focus, "semibold"),), around=(8.0, 1.0, 1.0)),
-                action,
-                theme,
-                stands_out=True,
-            )
-        ]
+        said_on_it = Row((Text(title, 12.0, theme.focus, "semibold"),), around=(8.0, 1.0, 1.0))
+        offer = [button(said_on_it, action, theme, stands_out=True)]
+    around = _AROUND_NOTICE * u + sum(one.width(u) + 10.0 * u for one in offer)
+    for v in (sheet.view.room, sheet.viewport):  # beside the panels, unless it is long
+        room = min(v.width - 2 * EDGE * u, 640.0 * u) - around
+        most = max(int((min(bottom, v.bottom) - top - 60.0 * u) / line_height(sheet.font(13.0))), 1)
+        text = Text(said, 13.0, ink, lines=most, grow=1.0)
+        if text.height(u, room) <= _FEW_LINES * line_height(sheet.font(13.0)):
+            break
+    widest = max(text_width(line, sheet.font(13.0)) for line in wrapped(said, room, sheet.font(13.0)))
     inside = Row((sign, text, *offer), 10.0, (12.0, 10.0, 10.0), top=True)
     whole = Plate(inside, ground, ink if status.problem else theme.line, radius=6.0)
-    width = widest + _AROUND_NOTICE * u + sum(one.width(u) + 10.0 * u for one in offer)
+    width = widest + around
     height = whole.height(u, width)
     places = _for_notice(sheet, v, width, height, (top, min(bottom, v.bottom)))
     left, upper = min(places, key=lambda at: _hidden(sheet, at, width, height))
@@ -440,7 +432,7 @@ def draw_references(sheet: Sheet, values: Sequence[Numbered], former: int) -> li
     lines, occupancy, u = [], sheet.occupancy, sheet.unit
     for number, label, _ in values:
         table, row = label.of or ("rods", 0)
-        name = Text(str(number or sheet.model.tables[table].names[row]), 9.0, label.colour, grow=1.0)
+        name = Text(str(number or sheet.model.tables[table].handles[row].said), 9.0, label.colour, grow=1.0)
         lines.append(Row((name, Text(label.short, 9.0, label.colour, "semibold")), 6.0))
     low, high = sheet.viewport.corners
     held = np.array([divmod(former, _WIDEST)], dtype=np.float64)
@@ -449,10 +441,12 @@ def draw_references(sheet: Sheet, values: Sequence[Numbered], former: int) -> li
         inside = Row(columns, 10.0, (6.0, 3.0, 3.0), top=True)
         block = Plate(inside, faded(sheet.theme.background, 0.9), sheet.theme.line, radius=4.0)
         size = np.array([width := block.width(u), block.height(u, width)])
-        x = np.arange(low[0] + 6.0 * u, high[0] - size[0], 6.0 * u)
-        y = np.arange(high[1] - 6.0 * u - size[1], low[1], -6.0 * u)
         inside_it = ((held >= low) & (held + size <= high)).all(axis=1)
-        for corners in (held[inside_it], np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)):
+        for corners in (held[inside_it], None):
+            if corners is None:
+                x = np.arange(low[0] + 6.0 * u, high[0] - size[0], 6.0 * u)
+                y = np.arange(high[1] - 6.0 * u - size[1], low[1], -6.0 * u)
+                corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
             cells = occupancy.cells_of(corners, np.broadcast_to(size, corners.shape))
             free = np.flatnonzero(occupancy.are_free(cells, covered))
             if len(free):

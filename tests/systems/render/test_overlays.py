@@ -92,8 +92,8 @@ def test_an_empty_model_says_how_to_begin() -> None:
     texts = compose(session.model, session.view, LIGHT).texts
     assert {"An empty model", "Draw a particle", "P", "Open a model", "D"} <= set(texts)
     enabled = [hit for hit in hits_in(session) if hit.enabled and hit.at is not None]
-    assert [hit.action for hit in enabled] == ["place", "rod", "rigid", "load", "toggle help"]
-    place, _, _, load, _ = enabled
+    assert [hit.action for hit in enabled] == ["place", "rod", "rigid", "new grid", "load", "toggle help"]
+    place, _, _, _, load, _ = enabled
     session.press("click", (place.left + 40.0, place.top + 5.0))
     session.update_view()
     assert session.view.tool == "place"
