@@ -160,7 +160,7 @@ class GeneratedModule:
     def functions(self) -> dict[str, Kernel]:
         """What Python may call."""
         made = vars(self.module).items()
-        return {n: k for n, k in made if isinstance(k, Kernel) and k.use in (Use.KEPT, Use.ENTRY)}
+        return {n: k for n, k in made if isinstance(k, Kernel) and k.use is Use.KEPT}
 
     @property
     def form(self) -> Any:

@@ -2,11 +2,11 @@
 
 A kernel is declared by one of these decorators; declaring needs no compiler.
 
-    compiled   a kernel that may also be called from Python, and tested, by itself
-    part       a kernel that only other kernels call
-    kept       a function of a generated module, that calls kernels, whose machine code is kept on disk
-    entry      one by which Python enters a program that consists of parts
-    shared     one whose loops over a `prange` are shared among cores
+    compiled   a kernel, which others call; it may also be called from Python, and tested, by itself
+    part       the same, with further options of numba
+    kept       a function by which Python enters a generated module, and the kernels that it calls: its machine code is
+               kept on disk
+    shared     a kernel whose loops over a `prange` are shared among cores
 
 All of them: IEEE division (no exceptions), no fastmath, so that the same input gives the same bits. The plain form is
 in systems/program/interpreter.py, machine code in systems/program/machine_code.py.
@@ -28,10 +28,8 @@ PLAIN = os.environ.get("PINJOINT_PLAIN_NUMBA", "") == "1"
 class Use(Enum):
     """How a kernel is reached, which decides how it is compiled."""
 
-    BY_ITSELF = "compiled"
-    PART = "part"
+    PART = "compiled"
     KEPT = "kept"
-    ENTRY = "entry"
     SHARED = "shared"
 
 
@@ -65,25 +63,20 @@ def _declared(use: Use, signature: str = "", **options: Any) -> Callable[[Callab
     return partial(Kernel, use=use, signature=signature, error_model="numpy", **options)
 
 
-compiled, shared = _declared(Use.BY_ITSELF), _declared(Use.SHARED)
+compiled, shared = _declared(Use.PART), _declared(Use.SHARED)
 
 
 def part(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
-    """A decorator like `compiled`, with further options of numba, for functions that only compiled ones call."""
+    """A decorator like `compiled`, with further options of numba."""
     return _declared(Use.PART, **options)
 
 
 def kept(signature: str = "", **options: Any) -> Callable[[Callable[..., Any]], Kernel]:
-    """A decorator like `compiled`, for functions of generated modules.
+    """A decorator like `part`, for functions by which Python enters generated modules.
 
     signature: compile for it at once, and never for another.
     """
     return _declared(Use.KEPT, signature, **options)
-
-
-def entry(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
-    """A decorator like `compiled`, with further options, for functions by which Python enters a program of parts."""
-    return _declared(Use.ENTRY, **options)
 
 
 prange = range

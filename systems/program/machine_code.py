@@ -38,7 +38,6 @@ from numba.core.serialize import dumps
 from numba.core.types import WrapperAddressProtocol, unliteral
 from numba.extending import typeof_impl
 
-from pinjoint.components.language import tr
 from pinjoint.systems import is_ours
 from pinjoint.systems.program import cache
 from pinjoint.systems.program.kernel import PLAIN, Kernel, Use
@@ -47,12 +46,9 @@ _PROCESSOR = repr(cpu_target.target_context.codegen().magic_tuple())
 
 _NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _FURTHER: dict[Use, dict[str, Any]] = {
-    Use.BY_ITSELF: {"no_cfunc_wrapper": True},
-    Use.PART: _NO_WRAPPERS,
+    Use.PART: {"no_cfunc_wrapper": True},
     Use.SHARED: {**_NO_WRAPPERS, "parallel": True},
-    Use.KEPT: {"nogil": True},  # others may call them by their address
-    # without the lock, since a thread ends the process where a call never returns
-    Use.ENTRY: {"no_cfunc_wrapper": True, "nogil": True},
+    Use.KEPT: {"nogil": True},  # without the lock, since a thread ends the process where a call never returns
 }
 
 
@@ -70,7 +66,7 @@ def machine_code(kernel: Any) -> Any:
 
 def _part_of(kernel: Kernel) -> Any:
     """What functions that numba compiles call for a kernel."""
-    if PLAIN or kernel.use not in (Use.PART, Use.BY_ITSELF):
+    if PLAIN or kernel.use is not Use.PART:
         return machine_code(kernel)
     if kernel.machine_part is None:
         options = {"nopython": True, "boundscheck": None, **_NO_WRAPPERS, **kernel.targetoptions}
@@ -82,12 +78,10 @@ def _part_of(kernel: Kernel) -> Any:
 
 def _dispatcher_of(kernel: Kernel) -> Any:
     options, function = _FURTHER[kernel.use] | kernel.targetoptions, kernel.py_func
-    if kernel.use is Use.PART and not PLAIN:
-        return _part_of(kernel)
-    if kernel.use is Use.ENTRY and not PLAIN:
+    if kernel.use is Use.KEPT and not PLAIN:
         options["pipeline_class"] = _EntryCompiler
     dispatcher: Any = njit(**options)(function)
-    if kernel.use in (Use.KEPT, Use.ENTRY):
+    if kernel.use is Use.KEPT:
         dispatcher._cache = _MachineCode(function)
     if kernel.signature:
         dispatcher.compile(kernel.signature)
@@ -255,15 +249,6 @@ class _Part(CPUDispatcher):
         """The same version for the constant 3 as for any other integer."""
         plain = {name: unliteral(kind) for name, kind in named.items()}
         return super().get_call_template(tuple(unliteral(kind) for kind in given), plain)
-
-    def __call__(self, *given: Any, **named: Any) -> Any:
-        """Raise TypeError: a part has no machine code of its own."""
-        raise TypeError(
-            tr(
-                "{function} is a part of programs: call it from a compiled function.",
-                function=self.py_func.__qualname__,
-            )
-        )
 
 
 # --- entries -------------------------------------------------------------------------------------

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 import weakref
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
@@ -110,11 +109,9 @@ class Program:
     failure: what a kernel raised in a step, and which, if one did.
     plan: the step systems that it was asked for.
     module: its functions. tolerance: of each step; 0 where the error is not controlled.
-    compile_seconds: time that writing it took, and compiling it, or loading it from the cache, if that was done at once.
     """
 
     def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
-        started = time.perf_counter()
         self.model = model
         self.plan = tuple(systems)
         self.integrator = integrator
@@ -136,7 +133,6 @@ class Program:
         self.module.begin(self._rows("rods"))
         if not self.module.is_loaded:
             self._call_all()
-        self.compile_seconds = time.perf_counter() - started
 
     def _call_all(self) -> None:
         """Call every function once, which makes numba compile it, or load it from the cache, if it is to be compiled."""

@@ -102,11 +102,10 @@ import math
 
 import numpy as np
 
-from pinjoint.systems.program.kernel import entry, part
+from pinjoint.systems.program.kernel import compiled, kept, part
 
-compiled = part()
 inlined = part(forceinline=True)
-entered = entry(_nrt={may_allocate})
+entered = kept(no_cfunc_wrapper=True, _nrt={may_allocate})  # nobody calls them by address
 '''
 
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 import numpy as np
 from numba import njit
 
+import pinjoint.systems.program.machine_code  # noqa: F401 - by which numba knows kernels
 from pinjoint.systems.program.interpreter import in_lists
 from pinjoint.systems.program.kernel import part
-from pinjoint.systems.program.machine_code import machine_code
 
 
 @part()
@@ -35,7 +35,7 @@ def test_a_part_of_a_part_computes_what_python_does() -> None:
 
 def test_constants_make_no_version_of_a_part_of_their_own() -> None:
     entry(np.ones(2))
-    assert sorted(str(kind) for (kind,) in machine_code(double).overloads) == ["float64", "int64"]
+    assert sorted(str(kind) for (kind,) in double.machine_part.overloads) == ["float64", "int64"]
 
 
 def test_a_part_is_interpreted_where_python_calls_it() -> None:

@@ -31,7 +31,7 @@ CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
 class Flight:
     """The particles of one model on their exact paths from impact to impact.
 
-    flying: the discs as they are in the midst of a step, if they fly already. measures, compile_seconds: as of Program.
+    flying: the discs as they are in the midst of a step, if they fly already. measures: as of Program.
     unbalanced: force on each particle as last observed (kN).
     The paths are part of the model's state: clock.collision_state. laws: a hand's, for one, whose forces are held
     constant during a step, so that paths are exact within it.
@@ -43,7 +43,6 @@ class Flight:
     follows_state = False  # contacts keep particles at rest, too
 
     def __init__(self, model: Model, impacts: Impacts, laws: Sequence[Law] = ()) -> None:
-        started = time.perf_counter()
         self.model = model
         self.measures = np.zeros(len(Measure))
         self.unbalanced = np.zeros((model.particles.count, 2))
@@ -53,7 +52,6 @@ class Flight:
         for module in (EVENTS, HORIZONS):
             module.begin(model.particles.count)
         self.bind()
-        self.compile_seconds = time.perf_counter() - started
 
     @property
     def changes_end(self) -> float:
