@@ -39,7 +39,6 @@ WIDTH = ROOMS[0][0]  # points of a column of text
 PIXEL = 0.64  # points of a pixel of a picture
 GUTTER = 4 * mm  # between what stands side by side
 REST = 54 * mm  # the least width of a text that takes what is left of a row
-_FRAME = 6.0  # points that frames of reportlab leave inside margins
 _GREY = Color(0.35, 0.38, 0.45)
 _LEAST = 7.5  # points of type; wider tables are divided
 _PADDING = 2.6  # points to either side of what is in a table
@@ -292,15 +291,7 @@ def _built(title: str, parts: Sequence[Flowable], foot: str) -> tuple[int, bytes
         made,
         pageTemplates=[
             PageTemplate(
-                str(turned),
-                Frame(
-                    MARGIN - _FRAME,
-                    _BOTTOM - _FRAME,
-                    ROOMS[turned][0] + 2 * _FRAME,
-                    ROOMS[turned][1] + 2 * _FRAME,
-                ),
-                onPage=number,
-                pagesize=size,
+                str(turned), Frame(MARGIN, _BOTTOM, *ROOMS[turned], 0, 0, 0, 0), onPage=number, pagesize=size
             )
             for turned, size in enumerate((A4, landscape(A4)))
         ],
