@@ -16,7 +16,7 @@ from pinjoint.components.rod import bends, nodes
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.view import Cut, View
 from pinjoint.force_method.guide import scale_to
-from pinjoint.systems.render.backends.paper import GUTTER, PIXEL, WIDTH, Block, Figure, Layout
+from pinjoint.systems.render.backends.paper import GUTTER, PIXEL, ROOMS, WIDTH, Block, Figure, Layout
 from pinjoint.systems.render.marks import Mark, Strokes, Text
 from pinjoint.systems.render.model.arrows import largest_force
 from pinjoint.systems.render.picture import compose
@@ -29,6 +29,12 @@ _BESIDE_IT, _ABOVE, _BELOW = 56.0, 46.0, 62.0  # pixels around a structure, for 
 _MOMENTS = 12.0  # pixels more beside it, for the values of moments
 _SHORTER = 1.3  # times the largest force: that of the longest arrow
 _DIAGRAM = 30.0  # pixels of the largest axial force
+_SPARE = 70.0  # pixels more below a structure and half as many above it, where values need them
+_PART = 0.42  # of the height of a page, that of figures made larger
+_RIGHT, _UNDER = 44.0, 24.0  # pixels for dimensions on the right and below
+_LOADS = 16.0  # pixels less beside and more above a structure that has loads only
+_CAPTION = 28.0  # points of a page for the caption of its figure
+_NUMBERED = 3  # values for which numbers may stand before a figure is made larger
 _ROWS = 120  # of a table that are printed
 _TICK, _TYPE = 4.0, 11.0  # points: of dimensions, half a tick and the size of numbers
 
@@ -78,56 +84,72 @@ def figure(
     unit: float = 1.0,
     measured: bool = False,
     moved: bool = False,
+    grows: bool = False,
 ) -> Block:
     """A picture of a model, with the diagrams of a quantity.
 
     row: how many figures stand in a row; 0: by its shape. unit: pixels per point of its texts. measured: with its
     dimensions and all names. moved: so that displacements are well seen, by which factor the caption says; else undeformed.
+    grows: until every value is told, up to a page of its own, on its side if the structure is wider than high.
     """
     model.delete(list(model.grids))
     wide, high = shape(model)
     row = row or in_a_row(layout, model)
-    width = int((WIDTH - (row - 1) * GUTTER) / row / PIXEL)
-    beside = unit * (_BESIDE_IT + _MOMENTS * is_frame(model))
-    above, below = unit * _ABOVE, unit * _BELOW
-    room = width - 2.0 * beside
-    height = int(min(room * high / wide + above + below, layout.figure / PIXEL * unit))
+    rooms = [((WIDTH - (row - 1) * GUTTER) / row, layout.figure * unit, 0.0)]
+    if grows:
+        across, tall = ROOMS[wide > high]
+        rooms += [(WIDTH, _PART * ROOMS[0][1], _SPARE), (across, tall - _CAPTION, 2.0 * _SPARE)]
     view = View(legend=False, has_scale=False, all_diagrams=diagrams is not None, quantity=diagrams or AXIAL)
     view.names = measured
     view.cuts, view.has_units, view.pixel_ratio = tuple(cuts), has_units, unit
-    view.camera = Camera(viewport=Viewport(0, 0, width, height))
-    inner = Viewport(int(beside), int(above), int(room), int(height - above - below))
-    view.camera.fit(model.particles.position, 0.0, inner, 1.0)
-    view.largest_force = _SHORTER * largest_force(model, view)
     pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
     model.settings.diagram_scale = scale_to(_DIAGRAM, pulled)
     model.settings.displacement_scale, model.settings.original_diagrams = 0.0, not moved
-    if moved:
-        bows = extremes(deflections(model, np.flatnonzero(model.rods.bending_stiffness > 0.0)))[0]
-        most = max(float(np.hypot(*model.particles.displacement.T).max(initial=0.0)), largest(bows))
-        model.settings.displacement_scale = scale = scale_to(_DIAGRAM * unit / view.camera.scale, most)
-        caption = joined([caption, tr("displacements × {scale}", scale=written.given(scale))], ", ")
     loaded_ones = [p for p in model.particles if any(p.force) or p.moment] + [
         one.particle for one in model.loads
     ]
     model.tag_only(loaded_ones, DiagramShown)
     theme = replace(load_theme("light"), background=(255, 255, 255, 255))
-    picture = compose(model, view, theme)
-    if measured:
-        picture.marks.extend(_dimensions(model, view, theme))
-    made = Figure(picture, layout.text(caption, "caption"))
+    beside = unit * (_BESIDE_IT + _MOMENTS * is_frame(model) - _LOADS * measured)
+    right, under = (unit * _RIGHT, unit * _UNDER) if measured else (0.0, 0.0)
+    found, said = list[Figure](), caption
+    for across, tall, spare in rooms:
+        above = unit * (_ABOVE + _LOADS * measured + 0.5 * spare)
+        width, below = across / PIXEL - right, unit * (_BELOW + spare)
+        room = width - 2.0 * beside
+        height = min(room * high / wide + above + below, tall / PIXEL - under)
+        if spare:
+            width = min(width, (height - above - below) * wide / high + 2.0 * (beside + unit * spare))
+            room = width - 2.0 * beside
+        view.camera = Camera(viewport=Viewport(0, 0, int(width), int(height)))
+        inner = Viewport(int(beside), int(above), int(room), int(height - above - below))
+        view.camera.fit(model.particles.position, 0.0, inner, 1.0)
+        view.largest_force = _SHORTER * largest_force(model, view)
+        if moved:
+            bows = extremes(deflections(model, np.flatnonzero(model.rods.bending_stiffness > 0.0)))[0]
+            most = max(float(np.hypot(*model.particles.displacement.T).max(initial=0.0)), largest(bows))
+            model.settings.displacement_scale = scale_to(_DIAGRAM * unit / view.camera.scale, most)
+            scale = written.given(model.settings.displacement_scale)
+            said = joined([caption, tr("displacements × {scale}", scale=scale)], ", ")
+        picture = compose(model, view, theme)
+        if measured:
+            picture.marks.extend(_dimensions(model, view, theme))
+            whole = Viewport(0, 0, int(width + right), int(height + under))
+            picture = replace(picture, viewport=whole)
+        found.append(Figure(picture, layout.text(said, "caption")))
+        if picture.untold <= (0, _NUMBERED):
+            break
+    made = min(found, key=lambda figure: figure.picture.untold)
     return made.width, [made]
 
 
 def _dimensions(model: Model, view: View, theme: Theme) -> Iterator[Mark]:
-    """Chains of dimensions (m) below the structure and on its right, of what is not too close together."""
+    """Chains of dimensions (m) below the viewport and on its right, of what is not too close together."""
     unit, places = view.pixel_ratio, model.particles.position[nodes(model)]
     if not len(places):
         return
-    pixels, size = view.camera.to_pixels(places), round(_TYPE * unit)
-    high = pixels.max(axis=0)
-    beside = _BESIDE_IT - 16.0 + _MOMENTS / 2.0 * is_frame(model)  # clear of names
-    for axis, line in ((0, high[1] + (_BELOW - 14.0) * unit), (1, high[0] + beside * unit)):
+    pixels, size, seen = view.camera.to_pixels(places), round(_TYPE * unit), view.camera.viewport
+    for axis, line in ((0, seen.height + (_UNDER - 2.0 * _TICK) * unit), (1, seen.width + 2.0 * _TICK * unit)):
         known, first = np.unique(places[:, axis].round(6), return_index=True)
         ticks = pixels[first, axis]
         texts = [written.given(length) for length in np.diff(known).tolist()]

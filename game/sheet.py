@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
-from reportlab.platypus import Flowable, KeepTogether
+from reportlab.platypus import CondPageBreak, Flowable, KeepTogether
 
 from pinjoint.components.bent import AXIAL
 from pinjoint.components.language import joined, tr
@@ -23,6 +23,7 @@ from pinjoint.tables import Column, Table
 
 _FLAT = 1.6  # times as wide as high: of such structures each figure has a row of its own
 _BESIDE = 20  # rods up to which their table stands beside figures
+_SHORT, _BEGUN = 24, 100.0  # rows of tables that pages do not part; points for the beginning of another
 _LARGER = 1.2  # type in figures, that of reports being 1
 
 
@@ -62,7 +63,7 @@ def contents(solved: Solved, layout: Layout) -> list[Flowable]:
     """What the sheet consists of, from the top to the bottom."""
     model, results = solved.model, solved.results
     wide, high = shape(model)
-    draw = partial(figure, layout, model, row=1 if wide > _FLAT * high else 2, unit=_LARGER)
+    draw = partial(figure, layout, model, row=1 if wide > _FLAT * high else 2, unit=_LARGER, grows=True)
     theory = tr("Statics by first-order theory: equilibrium about the original shape.")
     if not model.first_order:
         theory = tr("Statics in exact geometry: equilibrium of the deformed shape.")
@@ -71,6 +72,7 @@ def contents(solved: Solved, layout: Layout) -> list[Flowable]:
         if bends(model) or quantity == AXIAL:
             figures.append(draw(title, diagrams=quantity))
     figures.append(draw(tr("Deflected shape"), moved=True))
+    large = [block for block in figures if block[1][0].fills_page]
     tables = {
         tr("Rods"): _members(layout, solved),
         tr("Forces in rods"): printed(layout, results.rods),
@@ -85,15 +87,19 @@ def contents(solved: Solved, layout: Layout) -> list[Flowable]:
         layout.text(solved.title, "title"),
         layout.text(f"{theory} {signs(model)}", "subtitle"),
         *([layout.text(solved.said)] if solved.said else []),
-        *in_rows(figures),
+        *in_rows([block for block in figures if block not in large]),
         *(part for title, blocks in below for part in _under(title, blocks)),
+        *(part for _, parts in large for part in parts),
     ]
 
 
 def _under(heading: Flowable, blocks: list[Block]) -> list[Flowable]:
     """Tables below each other under a heading; short ones are not parted by pages."""
     parts = [part for _, some in blocks for part in some]
-    return [KeepTogether([heading, *parts])] if len(blocks) == 1 else [heading, *parts]
+    if len(blocks) == 1 and len(parts[0]._cellvalues) <= _SHORT:
+        return [KeepTogether([heading, *parts])]
+    heading.keepWithNext = False  # else what fits on one page is begun on a new one
+    return [CondPageBreak(_BEGUN), heading, *parts]
 
 
 def _members(layout: Layout, solved: Solved) -> list[Block]:

@@ -137,7 +137,7 @@ class Picture:
     """Everything to be drawn in one viewport; without a background, over what is there already.
 
     meanings: names of the colours that occur in it and mean something. hits: where a press does something, the topmost
-    last.
+    last. untold: how many values found no room, and of how many only a number stands in it.
     """
 
     viewport: Viewport
@@ -145,6 +145,7 @@ class Picture:
     marks: list[Mark] = field(default_factory=list)
     meanings: tuple[str, ...] = ()
     hits: Sequence[Hit] = ()
+    untold: tuple[int, int] = (0, 0)
 
     @property
     def texts(self) -> list[str]:

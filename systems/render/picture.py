@@ -48,6 +48,7 @@ from pinjoint.systems.render.ui.overlays import (
     draw_overlays,
     draw_references,
     draw_scale,
+    hidden_values,
     place_scale,
     put_notice,
     taken_by_heading,
@@ -187,7 +188,8 @@ def _composed(sheet: Sheet) -> Picture:
     ]
     sheet.placed |= sheet.scales
     marks = [*sheet.marks, *labels, *over]
-    return Picture(sheet.viewport, theme.background, marks, tuple(sheet.legend), paper.hits)
+    untold = hidden_values(sheet, sheet.placed), len(referred)
+    return Picture(sheet.viewport, theme.background, marks, tuple(sheet.legend), paper.hits, untold)
 
 
 # --- whose the arrows are ----------------------------------------------------------------------------

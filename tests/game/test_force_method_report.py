@@ -179,11 +179,11 @@ def rows_in(parts: Sequence[Any]) -> Iterator[Any]:
 def texts_of_figures(found: Tables) -> list[list[str]]:
     """The texts in each figure of a report, in order."""
     return [
-        part._picture.texts
+        part.picture.texts
         for row in rows_in(contents(found, TEXTBOOK))
         for cell in row._cellvalues[0]
         for part in cell
-        if hasattr(part, "_picture")
+        if hasattr(part, "picture")
     ]
 
 

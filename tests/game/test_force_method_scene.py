@@ -16,7 +16,7 @@ from pinjoint.force_method.copies import elastic_copy
 from pinjoint.force_method.guide import Guide
 from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.model.sheet import measure
-from pinjoint.systems.render.picture import compose_all
+from pinjoint.systems.render.picture import compose, compose_all
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.overlays import MEANINGS, meanings_of
 from pinjoint.systems.render.ui.page import draw_page
@@ -630,3 +630,26 @@ def test_the_report_is_saved_in_the_last_part() -> None:
     session.press("p")
     assert session.notice == "Report saved: /somewhere/pinjoint-force-method.pdf"
     assert saved["pinjoint-force-method.pdf"].startswith(b"%PDF")
+
+
+@pytest.mark.parametrize("size", [(1024, 768), (1280, 800)])
+def test_sets_stand_still_and_tell_both_parts_of_a_load(size: tuple[int, int]) -> None:
+    session = Session.open("hyperstatic")
+    session.resize(*size)
+    session.particles["C"].force = (10.0, -20.0)
+    for key in "ki":
+        session.press(key)
+    places = set()
+    for _ in range(5):
+        session.frame(1 / 60)
+        model, view = session.stages[1]
+        assert isinstance(model, Model)
+        places.add(tuple(view.camera.to_pixels([[0.0, 0.0]])[0].tolist()))
+        load = load_theme("light").load
+        marks = compose(model, view, load_theme("light")).marks
+        told = [mark.text for mark in marks if isinstance(mark, Text) and mark.colour == load]
+        assert {text.split()[0] for text in told} >= {"10.00", "20.00"}
+        session.press("k")
+        if guide_of(session).part == 2:
+            session.click(0.5, 1.0)
+    assert len(places) == 1

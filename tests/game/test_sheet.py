@@ -1,29 +1,79 @@
 """Sheets: their tables say what hand calculations do, and their figures have all values."""
 
+from collections.abc import Iterable, Iterator
+from itertools import combinations
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pinjoint.commands.command_line import main
+from pinjoint.components.bent import AXIAL
+from pinjoint.components.rod import bends
 from pinjoint.components.theory import EXACT, FIRST_ORDER, THEORIES
 from pinjoint.documents import models
+from pinjoint.figures import diagram_titles
 from pinjoint.session import Session
 from pinjoint.sheet import NoSheet, Solved, contents, sheet
 from pinjoint.systems.render.backends.paper import LAYOUTS, Figure
+from pinjoint.systems.render.marks import Picture, Text
+from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.typography import text_width
 from pinjoint.systems.statics.theory import linear
 from tests.game.test_force_method_report import written_in
 from tests.game.test_results import column
+from tests.golden.test_all_values import missing, told
+
+LOAD = load_theme("light").load
 
 
-def figures_of(parts: list[object]) -> list[list[str]]:
-    """The texts in each figure."""
-    found: list[list[str]] = []
+def figures_of(parts: Iterable[object]) -> Iterator[Figure]:
+    """The figures."""
     for part in parts:
         if isinstance(part, Figure):
-            found.append(part._picture.texts)
+            yield part
         for row in getattr(part, "_cellvalues", ()):
-            found += figures_of([inner for cell in row if isinstance(cell, list) for inner in cell])
+            yield from figures_of([inner for cell in row if isinstance(cell, list) for inner in cell])
+
+
+def boxes_of(picture: Picture) -> list[tuple[str, float, float, float, float]]:
+    """The texts of a picture, and what they cover: left, top, right, bottom."""
+    found = []
+    for mark in picture.marks:
+        if isinstance(mark, Text):
+            width = text_width(mark.text, mark.size, mark.weight)
+            left = mark.x - {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * width
+            found.append((mark.text, left, mark.y - 0.4 * mark.size, left + width, mark.y + 0.4 * mark.size))
     return found
+
+
+@pytest.mark.parametrize("name", models.bundled())
+def test_every_value_is_told_beside_no_other(name: str) -> None:
+    try:
+        solved = Solved(models.load(name), FIRST_ORDER)
+    except NoSheet:
+        return
+    assert sheet(models.load(name)).startswith(b"%PDF")  # all have room on pages
+    model, titles = solved.model, {title: quantity for quantity, title in diagram_titles().items()}
+    for layout in LAYOUTS[:2]:
+        told_of = set()
+        for figure in figures_of(contents(solved, layout)):
+            picture, title = figure.picture, figure.caption.text
+            for (one, *a), (other, *b) in combinations(boxes_of(picture), 2):
+                apart = a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
+                assert apart, (title, one, other)
+            if title in titles:
+                told_of.add(titles[title])
+                assert missing(model, titles[title], told(picture, model)[0]) == []
+            else:
+                forces = int((np.abs(model.particles.force) > 1e-4).sum())
+                values = [
+                    m
+                    for m in picture.marks
+                    if isinstance(m, Text) and m.colour == LOAD and m.weight == "semibold"
+                ]
+                assert len(values) >= forces, title
+        assert told_of == ({*titles.values()} if bends(model) else {AXIAL})
 
 
 def test_a_gerber_beam_has_the_numbers_of_statics() -> None:
@@ -34,7 +84,7 @@ def test_a_gerber_beam_has_the_numbers_of_statics() -> None:
     joints = tables["displacement x\ncm"]
     assert [row[5] for row in joints[1:]] == ["20.00", "80.00", "", "", "80.00", "20.00"]
     assert tables["force x\nkN"][-1] == ["Σ", "0", "0", "0"]
-    drawing, moments, shears, _, deflected = figures_of(parts)
+    drawing, moments, shears, _, deflected = (figure.picture.texts for figure in figures_of(parts))
     assert [text for text in drawing if text.isdigit()] == ["6", "2", "4", "2", "6"]
     assert {"10 kN/m", "A", "GH"} <= {*drawing}
     assert {"60.00 kN·m", "20.00 kN·m"} <= {*moments}

@@ -29,6 +29,7 @@ if TYPE_CHECKING:  # it imports scipy
     from pinjoint.force_method.guide import Guide, Mechanism, Set
 
 WIDE = 1.1  # width / height from which the sets stand side by side
+_STILL = 0.66  # of the window, in which sets stand still while equations change
 _MOST_OF_HEIGHT = 0.45  # of the window that the equations and the table take at most; the rest is scrolled
 LARGE = 500  # rods; work on larger structures is announced in a picture first
 LOW = 1.8  # width / height of a place from which a structure stands beside its caption
@@ -220,7 +221,7 @@ class ForceMethod(Scene):
             model, view = stages[index]
             _place(view, viewport, ratio)
             if view.fitted:
-                _fit(model, view)
+                _fit(model, view, context)
             view.caption = captions[index]
             shown.append((model, view))
         if self.shown_guide is not None and not self.shown_guide.is_frame:
@@ -259,7 +260,7 @@ class ForceMethod(Scene):
         self.finish()
         for model, view in self._lay_out(context):
             view.fitted = True
-            _fit(model, view)
+            _fit(model, view, context)
 
 
 class Sets(System):
@@ -282,15 +283,17 @@ def _place(view: View, viewport: Viewport, ratio: float) -> None:
     view.camera.viewport, view.pixel_ratio = viewport, ratio
 
 
-def _fit(model: Model, view: View) -> None:
+def _fit(model: Model, view: View, context: Context) -> None:
     """Show the whole model below or, in a low place, beside the caption, which grows from part to part.
 
-    Around its original positions and a little more, so that the picture does not depend on how far frames have moved it.
+    Around its original positions and a little more, so that the picture does not depend on how far frames have moved it;
+    in a part of the window that most equations leave, so that it stays where it is while these change.
     """
     v, u = view.camera.viewport, view.pixel_ratio
     left, above = (v.width // 3, 0) if _is_low(v) else (0, round(min(CAPTION * u, 0.4 * v.height)))
     below = round(min(SCALE * u, 0.1 * v.height))
-    within = Viewport(v.left + left, v.top + above, v.width - left, max(v.height - above - below, 1))
+    high = min(v.height, round(_STILL * context.view.canvas.height))
+    within = Viewport(v.left + left, v.top + above, v.width - left, max(high - above - below, 1))
     original = model.particles.position
     reserve = MOVED * float(np.ptp(original, axis=0).max()) if len(original) else 0.0
     view.camera.fit(

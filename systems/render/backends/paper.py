@@ -5,16 +5,26 @@ from __future__ import annotations
 import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from operator import itemgetter
 from typing import Any
 from xml.sax.saxutils import escape
 
 from reportlab.lib.colors import Color, black
-from reportlab.lib.pagesizes import A4
+from reportlab.lib.pagesizes import A4, landscape
 from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import mm
 from reportlab.pdfbase.pdfmetrics import stringWidth
-from reportlab.platypus import Flowable, Paragraph, SimpleDocTemplate, Table
+from reportlab.platypus import (
+    BaseDocTemplate,
+    Flowable,
+    Frame,
+    NextPageTemplate,
+    PageBreak,
+    PageTemplate,
+    Paragraph,
+    Table,
+)
 
 from pinjoint.components.wording import UNPRINTABLE
 from pinjoint.systems.render.backends.pdf import draw_picture, embed_fonts
@@ -23,12 +33,12 @@ from pinjoint.systems.render.marks import Picture
 embed_fonts()  # widths of texts are wanted before there is a page
 
 REGULAR, BOLD = "Inter regular", "Inter semibold"
-MARGIN = 16 * mm
-WIDTH = A4[0] - 2 * MARGIN  # points of a column of text
+MARGIN, _TOP, _BOTTOM = 16 * mm, 10 * mm, 11 * mm
+ROOMS = [(wide - 2 * MARGIN, high - _TOP - _BOTTOM) for wide, high in (A4, landscape(A4))]  # points of pages
+WIDTH = ROOMS[0][0]  # points of a column of text
 PIXEL = 0.64  # points of a pixel of a picture
 GUTTER = 4 * mm  # between what stands side by side
 REST = 54 * mm  # the least width of a text that takes what is left of a row
-_FRAME = 6.0  # points that frames of reportlab leave inside margins
 _GREY = Color(0.35, 0.38, 0.45)
 _LEAST = 7.5  # points of type; wider tables are divided
 _PADDING = 2.6  # points to either side of what is in a table
@@ -106,22 +116,27 @@ class Figure(Flowable):  # type: ignore[misc]
 
     def __init__(self, picture: Picture, caption: Paragraph) -> None:
         super().__init__()
-        self._picture, self._caption = picture, caption
+        self.picture, self.caption = picture, caption
         self.width, self.height = PIXEL * picture.viewport.width, PIXEL * picture.viewport.height
+
+    @property
+    def fills_page(self) -> bool:
+        """Whether it is too large to stand among others."""
+        return bool(max(self.width, self.height) > WIDTH)
 
     def wrap(self, width: float, height: float) -> tuple[float, float]:
         """Its size in points."""
-        _, self._below = self._caption.wrap(self.width, height)
+        _, self._below = self.caption.wrap(self.width, height)
         return self.width, self.height + self._below
 
     def draw(self) -> None:
         """Draw it at the origin of the canvas."""
         page = self.canv
-        self._caption.drawOn(page, 0, 0)
+        self.caption.drawOn(page, 0, 0)
         page.saveState()
         page.translate(0, self._below)
         page.scale(PIXEL, PIXEL)
-        draw_picture(page, self._picture, self._picture.viewport.height)
+        draw_picture(page, self.picture, self.picture.viewport.height)
         page.restoreState()
 
 
@@ -255,7 +270,7 @@ def as_paper(
 ) -> bytes:
     """The contents of a PDF file: what is made in a layout, in the largest with which it takes the fewest pages of A4.
 
-    foot: below every page.
+    foot: below every page. Figures wider than a column of text stand on pages turned on their side.
     """
     _, made = min((_built(title, made_of(layout), foot) for layout in layouts), key=itemgetter(0))
     return made
@@ -270,19 +285,23 @@ def _built(title: str, parts: Sequence[Flowable], foot: str) -> tuple[int, bytes
         page.setFillColor(_GREY)
         page.drawString(MARGIN, 6 * mm, UNPRINTABLE.sub("�", foot))
         if document.page > 1:
-            page.drawRightString(A4[0] - MARGIN, 6 * mm, str(document.page))
+            page.drawRightString(page._pagesize[0] - MARGIN, 6 * mm, str(document.page))
 
-    document = SimpleDocTemplate(
+    document = BaseDocTemplate(
         made,
-        pagesize=A4,
-        leftMargin=MARGIN - _FRAME,
-        rightMargin=MARGIN - _FRAME,
-        topMargin=10 * mm - _FRAME,
-        bottomMargin=11 * mm - _FRAME,
+        pageTemplates=[
+            PageTemplate(
+                str(turned), Frame(MARGIN, _BOTTOM, *ROOMS[turned], 0, 0, 0, 0), onPage=number, pagesize=size
+            )
+            for turned, size in enumerate((A4, landscape(A4)))
+        ],
         title=UNPRINTABLE.sub("�", title),
         author="",
         creator="Pinjoint",
         invariant=1,
     )
-    document.build(list(parts), onFirstPage=number, onLaterPages=number)
+    story: list[Flowable] = []
+    for turned, some in groupby(parts, lambda part: isinstance(part, Figure) and part.width > WIDTH):
+        story += [NextPageTemplate(str(int(turned))), PageBreak()] * bool(story) + list(some)
+    document.build(story)
     return document.page, made.getvalue()

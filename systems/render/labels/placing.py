@@ -36,6 +36,8 @@ _STAGES = 0, 3, 1000
 _COVERED = {"cover": (STRONG,), "spare": (FAINT, STRONG), "avoid": (0,)}  # by each attempt, at most
 
 
+GIVEN = "particles.applied"  # how names of the fields of loads begin
+
 Key = tuple[str, int]  # such as ("rods.axial_force", its row)
 Placed = dict[Key, int]  # which of its places each label has taken
 
@@ -69,6 +71,10 @@ class Label(NamedTuple):
     short: str = ""
     small: bool = False
 
+    def is_given(self) -> bool:
+        """Whether it is the value of a load, which a person gave, and gives way to results."""
+        return self.key is not None and self.key[0].startswith(GIVEN)
+
     def smaller(self, unit: float) -> Label:
         """As it is told in smaller type."""
         return self._replace(text=self.short, size=font_size(_SMALL, unit), small=True)
@@ -99,7 +105,7 @@ def place_labels(
     if ranked:
         occupancy.parts.gather(np.concatenate([label.places for label in ranked]))
     values, names = ([label for label in ranked if (len(label.anchors) == 0) == name] for name in (False, True))
-    left = at.beside(values)
+    left = sorted(at.beside(values), key=Label.is_given)
     for smaller, over in ((False, False), (True, False), (True, True)) if left else ():
         if smaller and not over:
             left = at.beside([label.smaller(unit) for label in left])

@@ -330,5 +330,5 @@ def _write_forces(
             own=key,
             leads=leads,
             size=font,
-            short=texts[k] if few and name == "reaction" else "",
+            short=said(sheet, abs(float(value[index])), "") if few else "",
         )

@@ -18,7 +18,7 @@ from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES, THEORIES
 from pinjoint.components.view import BETWEEN, LEAST_MODEL
 from pinjoint.systems.render import marks
 from pinjoint.systems.render.labels.occupancy import STRONG
-from pinjoint.systems.render.labels.placing import Numbered, Placed
+from pinjoint.systems.render.labels.placing import GIVEN, Numbered, Placed
 from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes
 from pinjoint.systems.render.model.diagrams import EXPLAINED
 from pinjoint.systems.render.model.sheet import Sheet
@@ -374,7 +374,7 @@ def place_scale(sheet: Sheet, room: tuple[float, float]) -> tuple[Rectangle, flo
 
     There is room for how many values are hidden, before that is known; this is said alone, and over rods, in need.
     """
-    v, u, values = sheet.viewport, sheet.unit, _hidden_values(sheet, {})
+    v, u, values = sheet.viewport, sheet.unit, hidden_values(sheet, {})
     length = round_down(min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale)
     notes = _displacements(sheet) + sheet.notes
     for metres, said in ((length, notes), (0.0, notes), *([(0.0, list[str]())] if values else [])):
@@ -394,17 +394,17 @@ def draw_scale(sheet: Sheet, scale: tuple[Rectangle, float, list[str]] | None) -
     if scale is None:
         return []
     place, metres, notes = scale
-    whole, paper = _scale(sheet, metres, _hidden_values(sheet, sheet.placed), notes), Paper(sheet.unit)
+    whole, paper = _scale(sheet, metres, hidden_values(sheet, sheet.placed), notes), Paper(sheet.unit)
     if whole is not None:
         paper.put(whole, replace(place, width=min(whole.width(sheet.unit), place.width)))
     return paper.marks
 
 
-def _hidden_values(sheet: Sheet, placed: Placed) -> int:
+def hidden_values(sheet: Sheet, placed: Placed) -> int:
     """How many values there are beside those that are placed, but for loads, which a person gave; 0 in a file."""
     if not sheet.view.advises:
         return 0
-    fields = {field for field in sheet.values if not field.startswith("particles.applied")}
+    fields = {field for field in sheet.values if not field.startswith(GIVEN)}
     return sum(sheet.values[field] for field in fields) - sum(field in fields for field, _ in placed)
 
 
@@ -426,7 +426,7 @@ def _scale(sheet: Sheet, metres: float, hidden: int, notes: list[str]) -> Plate 
 
 def draw_references(sheet: Sheet, values: Sequence[Numbered], former: int) -> list[Mark]:
     """Numbers that stand for values, and these in columns that cover no text, where the last picture has them if that is
-    free; neither where there is no room. former: that place, -1 without one."""
+    free; neither where there is no room, loads first. former: that place, -1 without one."""
     if not values:
         return []
     lines, occupancy, u = [], sheet.occupancy, sheet.unit
@@ -454,9 +454,11 @@ def draw_references(sheet: Sheet, values: Sequence[Numbered], former: int) -> li
                 paper.put(block, Rectangle(*at, *size.tolist()))
                 sheet.scales[LIST] = int(at[0]) * _WIDEST + int(at[1])
                 return [*(mark for *_, own in values for mark in own), *paper.marks]
+    results = [one for one in values if not one[1].is_given()]
     for _, label, _ in values:
-        sheet.placed.pop(label.key or ("", 0), None)
-    return []
+        if label.is_given() or len(results) == len(values):
+            sheet.placed.pop(label.key or ("", 0), None)
+    return draw_references(sheet, results, former) if len(results) < len(values) else []
 
 
 def _ruler(theme: Theme, at: Rectangle, u: float) -> list[Mark]:
