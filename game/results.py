@@ -39,9 +39,10 @@ class Results:
         """The results of a model; of first order, places and levers are those of the original shape."""
         rods, particles, first_order = model.rods, model.particles, model.first_order
         place = particles.position if first_order else particles.position + particles.displacement
+        extent = float(np.ptp(place, axis=0).max()) if len(place) else 0.0
         force = _largest(rods.end_axial_force, rods.shear, particles.reaction, particles.applied_force)
-        of_forces = force * float(np.ptp(place, axis=0).max(initial=0.0)) if len(place) else 0.0
-        moment = max(of_forces, _largest(rods.bending_moment, particles.reaction_moment))
+        moment = _largest(rods.bending_moment, particles.reaction_moment)
+        force, moment = max(force, moment / (extent or np.inf)), max(moment, force * extent)
         bowed = 0.0 if first_order else _by_bowing(model)
         sums = _sums(model, place, bowed, force, moment)
         length = rods.original_length if first_order else rods.length

@@ -75,6 +75,13 @@ def test_loads_and_reactions_add_up_to_nothing(name: str) -> None:
     assert reactions == pytest.approx([-load for load in loads], rel=1e-9, abs=1e-9)
 
 
+def test_under_moments_alone_forces_are_rounding() -> None:
+    """Of a cantilever under a moment, shears were told as multiples of 10⁻²⁸ kN."""
+    found = settled("rolled_cantilever")
+    assert not any(column(found.rods, "shear_start") + column(found.rods, "end_axial_force_start"))
+    assert column(found.rods, "bending_moment_start")[0] == pytest.approx(4.0 * math.pi)
+
+
 def test_a_truss_has_axial_forces_alone() -> None:
     session = Session.open(models.document(panels()))
     session.settle()
