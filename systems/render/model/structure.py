@@ -145,9 +145,10 @@ def draw_rods(sheet: Sheet) -> None:
     for wanted, colour in layers:
         number[sheet.chosen(wanted, sheet.rods)] = len(colours)
         colours.append(colour)
-    for index in np.unique(number).tolist():
-        wider = _SHADED if sheet.shades else 1.35 if colours[index] == theme.yielding else 1.0
-        _draw_lines(sheet, number == index, width * wider, colours[index])
+    for index, colour in enumerate(colours):
+        if (mask := number == index).any():
+            wider = _SHADED if sheet.shades else 1.35 if colour == theme.yielding else 1.0
+            _draw_lines(sheet, slice(None) if mask.all() else mask, width * wider, colour)
     named = {**by_force, "yielding": yielding}
     for name, wanted in named.items():
         sheet.explain(name, *sheet.lines(sheet.chosen(wanted, sheet.rods))[:2])
@@ -161,7 +162,7 @@ def _rod_width(sheet: Sheet) -> float:
     return float(np.clip(0.12 * sheet.rod_length / sheet.unit, 0.5, 2.5)) * sheet.unit
 
 
-def _draw_lines(sheet: Sheet, mask: Truths, width: float, colour: Colour) -> None:
+def _draw_lines(sheet: Sheet, mask: Truths | slice, width: float, colour: Colour) -> None:
     """The lines of some rods, of one colour; where some bend, those that bend less are thicker."""
     rods, (start, end, rows) = sheet.model.rods, sheet.lines(mask)
     cables = rods.tension_only[rows]

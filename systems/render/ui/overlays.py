@@ -498,8 +498,11 @@ def _displacements(sheet: Sheet) -> list[str]:
         return [] if sheet.view.slider_places else [tr("displacements ×{scale:g}", scale=scale)]
     if not (sheet.view.advises and model.rods.count):
         return []
+    largest = float(np.abs(model.particles.displacement).max(initial=0.0))
+    if largest * sheet.view.camera.scale >= sheet.unit:
+        return []
     inside = farthest(model, np.flatnonzero(model.rods.bending_stiffness > 0.0))[0]
-    largest = float(np.append(inside, np.abs(model.particles.displacement)).max(initial=0.0))
+    largest = max(largest, float(inside.max(initial=0.0)))
     if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
         return []
     return [
