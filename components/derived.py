@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pinjoint.components.field import Column
-from pinjoint.components.load import CONSTANT
+from pinjoint.components.load import varying
 from pinjoint.components.particle import DEFAULT_MASS
 from pinjoint.components.rod import DEFAULT_STIFFNESS
 from pinjoint.components.section import Section
@@ -205,7 +205,7 @@ def constant_forces(world: World) -> None:
     """Own force, environment's force, mass × accelerations (kN), constant loads, and distributed forces."""
     particles, loads, rods = world.tables["particles"], world.tables["loads"], world.tables["rods"]
     environment = world.tables["environment"]
-    constant = _constant_rows(loads)
+    constant = ~varying(loads)
     with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
         acceleration = particles.acceleration + environment.acceleration
         force = particles.force + environment.force + particles.mass[:, None] * acceleration / 1000.0
@@ -220,13 +220,9 @@ def constant_forces(world: World) -> None:
 def constant_moments(world: World) -> None:
     """Own moment and that of constant loads (kN·m)."""
     loads = world.tables["loads"]
-    constant, moment = _constant_rows(loads), world.writable("particles.constant_moment")
+    constant, moment = ~varying(loads), world.writable("particles.constant_moment")
     moment[...] = world.tables["particles"].moment
     np.add.at(moment, loads.on[constant], loads.moment[constant])
-
-
-def _constant_rows(loads: Table[Any]) -> list[int]:
-    return [row for row, history in enumerate(loads.history) if history["kind"] == CONSTANT["kind"]]
 
 
 @derives("settings", "displacement_scale", "prescribed_displacement_scale automatic_displacement_scale")

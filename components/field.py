@@ -330,9 +330,7 @@ class Field(Generic[T]):
         if any_text and set(map(type, items)) == {str} and not is_broken("".join(items)):
             column[:] = items
             return column
-        known: dict[
-            str | None, Any
-        ] = {}  # texts that most elements share: 98 910 rods open in half of the time
+        known: dict[str | None, Any] = {}  # texts most elements share: many rods open in half the time
         for row, item in enumerate(items):
             shared = item is None or type(item) is str
             if not (shared and item in known):

@@ -10,12 +10,14 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import LARGEST, Field, FieldError, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.particle import Particle
+from pinjoint.components.table import Table
 from pinjoint.components.wording import cut, quoted
 from pinjoint.components.world import World
 
@@ -164,6 +166,11 @@ class Load(Handle):
         return found
 
 
+def varying(loads: Table[Load]) -> NDArray[np.bool_]:
+    """Which loads change in time, (loads,); the others are part of the constant forces and moments."""
+    return np.array([history["kind"] != CONSTANT["kind"] for history in loads.history], dtype=bool)
+
+
 def factor_at(history: History, time: float) -> float:
     """The factor of a history at a time (s); NaN where the mod that brought it is off."""
     kind = HISTORIES[history["kind"]]
@@ -178,7 +185,8 @@ def factor_at(history: History, time: float) -> float:
 
 def load_factor(world: World, time: float) -> float | None:
     """The factor at a time (s) that all varying loads share, 1 being the whole load; None if there are none, or several."""
-    histories = [history for history in world.tables["loads"].history if history["kind"] != CONSTANT["kind"]]
+    loads = world.tables["loads"]
+    histories = loads.history[varying(loads)].tolist()
     if not histories or any(history != histories[0] for history in histories):
         return None
     factor = factor_at(histories[0], time)

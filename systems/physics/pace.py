@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.load import CONSTANT, loads_end
+from pinjoint.components.load import loads_end, varying
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.rod import bends
@@ -125,12 +125,11 @@ def _static_displacement(model: Model, force: Array) -> Array | None:
 
 def _forces(model: Model) -> Array:
     """The forces on the particles with all loads at their full values (kN), moments too where rods bend, flattened."""
+    loads, varies = model.loads, varying(model.loads)
     force: Array = model.particles.constant_force.copy()
     moment = model.particles.constant_moment.copy()
-    for load in model.loads:
-        if load.history["kind"] != CONSTANT["kind"]:  # which acts among the constant forces
-            force[load.on] += load.force
-            moment[load.on] += load.moment
+    np.add.at(force, loads.on[varies], loads.force[varies])
+    np.add.at(moment, loads.on[varies], loads.moment[varies])
     return (np.column_stack([force, moment]) if bends(model) else force).ravel()
 
 

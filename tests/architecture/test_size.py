@@ -13,10 +13,10 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 63_981,
+    "lines": 63_979,
     "files": 368,
     "names": 3_578,  # functions, classes and constants of modules
-    "public names": 2_104,
+    "public names": 2_105,
     "numbers": 1_436,  # other than 0, 1 and 2, in constants and defaults
     "registers": 40,  # containers that fill while the program runs, and caches of functions
     "lines of tests": 52_145,

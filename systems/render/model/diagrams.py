@@ -14,7 +14,7 @@ import numpy as np
 
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, Axes, derivative, inner_forces, values, zeros
 from pinjoint.components.language import marked, tr
-from pinjoint.components.load import CONSTANT
+from pinjoint.components.load import varying
 from pinjoint.components.model import Model
 from pinjoint.components.tags import DiagramShown, Selected
 from pinjoint.components.view import MARGIN
@@ -190,8 +190,7 @@ def diagram_factor(largest: float, loads: float, scale: float, room: float) -> f
 def _loads(model: Model) -> float:
     """The sum of all external forces (kN), of varying ones the largest that they reach."""
     constant, loads = model.particles.constant_force, model.loads
-    varying = [row for row, history in enumerate(loads.history) if history["kind"] != CONSTANT["kind"]]
-    return float(np.hypot(*constant.T).sum() + np.hypot(*loads.force[varying].T).sum())
+    return float(np.hypot(*constant.T).sum() + np.hypot(*loads.force[varying(loads)].T).sum())
 
 
 def _outward(sheet: Sheet, rows: Rows) -> Values:
