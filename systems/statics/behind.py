@@ -49,12 +49,13 @@ class Behind(Generic[T]):
         if self._thread is None and seconds == math.inf:
             self._end()
         elif not self._ended:
-            if self._thread is None:
+            if self._thread is None or not self._thread.is_alive():  # not begun, or forgotten
                 self._thread = threading.Thread(target=self._run, daemon=True)
                 self._thread.start()
             else:
                 self._go.release()
-            self._over.acquire()
+            while not self._over.acquire(timeout=1.0) and self._thread.is_alive():
+                pass
         self.seconds += time.perf_counter() - started
         return self._ended
 
