@@ -1,7 +1,6 @@
 """Raster: draws strokes, areas and discs into the pixels of a picture by compiled kernels, and few strokes by numpy.
 
-While a hand drags a joint of a frame of 104 members, its diagrams and arrows are filled in 0.3 ms in place of 1.8: all must be
-done in 16 for 60 frames a second.
+While a hand drags a joint of a frame of 104 members, its diagrams and arrows are filled in 0.3 ms in place of 1.8.
 """
 
 from __future__ import annotations

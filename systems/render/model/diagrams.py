@@ -409,10 +409,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
         of, key, rank = ("rods", row), (field, int(keys[shown[k]])), -float(worth[k])
         sign = "zero" if abs(value[k]) <= SMALLEST else "tension" if value[k] > 0.0 else "compression"
         colour = _colour(sheet, sign) if quantity == AXIAL else sheet.colour_of("text")
-        leads, short = (
-            (anchors[k], normal[k]),
-            _written(sheet, quantity, float(value[k]), nothing, few=False) if told else "",
-        )
+        short = texts[k] if not few else _written(sheet, quantity, float(value[k]), nothing, few=False)
         write(
             sheet,
             texts[k],
@@ -422,10 +419,10 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
             of,
             rank=rank,
             own=of,
-            leads=leads,
+            leads=(anchors[k], normal[k]),
             size=size,
             lines=lines,
-            short=short,
+            short=short if told else "",
         )
 
 
