@@ -74,8 +74,7 @@ class Axes:
         particles, scale = model.particles, drawn_scale(model) if scale is None else scale
         ends = rods.between[rows].astype(np.intp)
         drawn = particles.position[ends] + particles.displacement[ends] * scale
-        drift = _drift(state)
-        drift = None if drift is None else scale * drift
+        drift = scale * state.drift if state.is_steep.any() else None
         return cls(drawn[:, 0], drawn[:, 1], state.left, scale * (state.cubic + state.sag), drift)
 
     @classmethod
@@ -100,7 +99,7 @@ class Axes:
 
     def points(self, shares: Array) -> Array:
         """Points at shares (k,) or (n, k), shape (n, k, 2)."""
-        along = np.broadcast_to(shares, (len(self.start), np.shape(shares)[-1]))[..., None]
+        along = shares[..., None]
         chord = self.start[:, None] * (1.0 - along) + self.end[:, None] * along
         found: Array = chord + self._away(self.bow, self.drift, shares)
         return found
@@ -135,16 +134,11 @@ class Axes:
             return None
         least = np.array([2, 4, 8, 16, _MOST_PIECES])
         count = least[np.minimum(np.searchsorted(least, wanted[curved]), len(least) - 1)]
-        starts, ends, of = [], [], []
-        for number in np.unique(count).tolist():
-            some = curved[count == number]
-            points = self.some(some).points(np.linspace(0.0, 1.0, number + 1))
-            starts.append(points[:, :-1].reshape(-1, 2))
-            ends.append(points[:, 1:].reshape(-1, 2))
-            of.append(np.repeat(rows[some], number))
-        row = np.concatenate(of)
-        order = np.argsort(row, kind="stable")
-        return Lines(np.concatenate(starts)[order], np.concatenate(ends)[order], row[order])
+        which = np.repeat(np.arange(len(curved)), count + 1)
+        number = np.arange(len(which)) - np.repeat(np.cumsum(count + 1) - (count + 1), count + 1)
+        points = self.some(curved[which]).points((number / count[which])[:, None])[:, 0]
+        first = np.flatnonzero(number < count[which])
+        return Lines(points[first], points[first + 1], rows[curved[which[first]]])
 
 
 def drawn_scale(model: Model) -> float:
@@ -218,16 +212,17 @@ def farthest(model: Model, rows: Rows) -> tuple[Array, Array]:
     return np.sqrt(found[:, 1]), shares[:, 1]
 
 
-def _drift(state: _State) -> Array | None:
-    """How far points move along the chords, so that ends with slopes φ lie at angles φ to them, not arctan φ."""
-    length = state.length
-    slopes = state.cubic[:, [1, 3]] / np.where(length > 0.0, length, 1.0)[:, None]
+def _drift(length: Array, cubic: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """How far points move along the chords, so that ends with slopes φ lie at angles φ to them, not arctan φ; and where φ is
+    so large that this is seen."""
+    slopes = cubic[:, [1, 3]] / np.where(length > 0.0, length, 1.0)[:, None]
     slopes[:, 1] -= slopes[:, 0]  # the cubic has φ_s and φ_s + φ_e
-    steep = np.clip(np.abs(slopes), 0.0, _STEEPEST)
-    if not (steep > _STEEP).any():
-        return None
+    steep = np.minimum(np.abs(slopes), _STEEPEST)
+    is_steep = (steep > _STEEP).any(axis=1)
+    if not is_steep.any():
+        return np.zeros_like(cubic), is_steep
     shorter = np.where(steep > _STEEP, steep / np.tan(np.maximum(steep, _STEEP)) - 1.0, -(steep**2) / 3.0)
-    return length[:, None] * _cubic(*shorter.T)
+    return length[:, None] * _cubic(*shorter.T), is_steep
 
 
 def _cubic(start: Array, end: Array) -> Array:
@@ -236,13 +231,16 @@ def _cubic(start: Array, end: Array) -> Array:
 
 
 class _State(NamedTuple):
-    """Of some rods: length, unit vector to the left, force across, deflections (n, 5): by slopes, and by that force."""
+    """Of some rods: length, unit vector to the left, force across, deflections (n, 5): by slopes, and by that force; and
+    their drift, and which are so steep that it is seen."""
 
     length: Array
     left: Array
     across: Array
     cubic: Array
     sag: Array
+    drift: Array
+    is_steep: NDArray[np.bool_]
 
 
 def _state(model: Model, rows: Rows) -> _State:
@@ -270,7 +268,8 @@ def _states(model: Model) -> _State:
     sag = np.divide(across * rods.rest_length**4, 24.0 * rods.bending_stiffness, out=zero.copy(), where=bent)
     cubic = _cubic(start, end)
     cubic[~bent] = 0.0
-    return _State(length, left, across, cubic, np.stack([zero, zero, sag, -2.0 * sag, sag], axis=1))
+    sags = np.stack([zero, zero, sag, -2.0 * sag, sag], axis=1)
+    return _State(length, left, across, cubic, sags, *_drift(length, cubic))
 
 
 def inner_forces(model: Model, rows: Rows, quantity: str) -> Array:
@@ -295,16 +294,17 @@ def zeros(polynomials: Array) -> tuple[Rows, Array]:
     signs = np.sign(sampled)
     which, place = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0.0)
     low, high = samples[place], samples[place + 1]
-    before, slopes, step = signs[which, place], derivative(polynomials), 0.5 * (high - low)
+    before, step, count = signs[which, place], 0.5 * (high - low), len(which)
+    slopes = np.pad(derivative(polynomials), ((0, 0), (0, 1)))
+    both = np.concatenate([polynomials[which], slopes[which]])
     with np.errstate(over="ignore", invalid="ignore"):  # of numbers beyond computing
         part = sampled[which, place] / (sampled[which, place] - sampled[which, place + 1])
     share = low + (high - low) * np.nan_to_num(part, nan=0.5)
     # From where a straight line is zero, Newton's method, or half the interval where that is less: down to rounding.
     for _ in range(60):
-        value = values(polynomials[which], share[:, None])[:, 0]
+        value, slope = values(both, np.concatenate([share, share])[:, None]).reshape(2, count)
         low, high = np.where(value * before > 0.0, share, low), np.where(value * before > 0.0, high, share)
-        slope = values(slopes[which], share[:, None])[:, 0]
-        newton = -np.divide(value, slope, out=np.full(len(value), np.inf), where=slope != 0.0)
+        newton = -np.divide(value, slope, out=np.full(count, np.inf), where=slope != 0.0)
         safe = (share + newton >= low) & (share + newton <= high) & (np.abs(newton) < 0.5 * np.abs(step))
         step = np.where(safe | (np.abs(newton) < _ROUNDING), newton, 0.5 * (low + high) - share)
         if not (np.abs(step) >= _ROUNDING).any():
@@ -333,7 +333,8 @@ def values(polynomials: Array, shares: Array) -> Array:
     """Values of polynomials (n, d) at shares (k,) or (n, k), shape (n, k)."""
     found = np.zeros((len(polynomials), np.shape(shares)[-1]))
     for coefficient in polynomials.T[::-1]:
-        found = found * shares + coefficient[:, None]
+        found *= shares
+        found += coefficient[:, None]
     return found
 
 

@@ -126,13 +126,14 @@ def draw_diagrams(sheet: Sheet, taken: float = 0.0) -> None:
     rows, start, end = sheet.rods[shown], sheet.start[shown], sheet.end[shown]
     quantity = sheet.view.quantity if sheet.is_frame else AXIAL
     force = np.nan_to_num(sheet.model.rods.axial_force)
-    if typical_length(start, end) < _SHORTEST * sheet.unit and not (sheet.is_frame and len(rows) <= _MANY):
+    length = sheet.rod_length if shown.all() else typical_length(start, end)
+    if length < _SHORTEST * sheet.unit and not (sheet.is_frame and len(rows) <= _MANY):
         if quantity == AXIAL:
             sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST], rows[force[rows] < -SMALLEST]
         sheet.advise(tr("zoom in to see force diagrams"))
         return
     window = min(sheet.viewport.width, sheet.viewport.height)  # what leaves the structure readable:
-    room = max(min(0.15 * window, 0.6 * typical_length(start, end)), 10.0 * sheet.unit)
+    room = max(min(0.15 * window, 0.6 * length), 10.0 * sheet.unit)
     diagram = (
         _curves(sheet, rows, quantity, min(_ROOM * room, MARGIN * sheet.unit), taken)
         if sheet.is_frame

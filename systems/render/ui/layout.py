@@ -101,12 +101,10 @@ class Text(Part):
         return next((size for size in sizes if text_width(self.text, size, self.weight) <= width), sizes[-1])
 
     def width(self, u: float) -> float:
-        if self.wide:
-            return self.wide * u
-        return max(text_width(line, self.size(u), self.weight) for line in self.text.split("\n"))
+        return self.wide * u or text_width(self.text, self.size(u), self.weight)
 
     def height(self, u: float, width: float) -> float:
-        return len(self._lines(u, width)) * self._apart(u)
+        return (1 if self.lines == 1 else len(self._lines(u, width))) * self._apart(u)
 
     def put(self, paper: Paper, place: Rectangle) -> None:
         u, size = paper.unit, self.size(paper.unit, place.width)
