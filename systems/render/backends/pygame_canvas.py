@@ -142,7 +142,7 @@ class Canvas:
 
     def _stamps(self, mark: Stamps) -> list[_Image]:
         # Pixels; so far away it is not seen, and can be counted in whole numbers.
-        fine = np.floor(np.clip(mark.at, -1e6, 1e6) * _PHASES + 0.5).astype(np.int64)
+        fine = np.floor(np.minimum(np.maximum(mark.at, -1e6), 1e6) * _PHASES + 0.5).astype(np.int64)
         key = mark.symbol, mark.size, mark.unit, mark.ink, mark.hollow, mark.turns
         images, pairs = self._kept(key, dict), []
         for x, y in fine.tolist():
@@ -157,11 +157,13 @@ class Canvas:
             colours = _pixel(surface, mark.ink), _pixel(surface, mark.hollow)
             raster.discs(_pixels(surface), _clip(surface), mark, *colours)
         else:
-            fine = np.round(4.0 * mark.radius)
-            for quarters in np.unique(fine).tolist():
-                size, at = quarters / 4.0, mark.at[fine == quarters]
-                symbol, unit = ("ring", mark.rim / RIM) if mark.rim else ("disc", 1.0)
-                surface.fblits(self._stamps(Stamps(symbol, at, size, unit, mark.ink, mark.hollow)))
+            fine, (symbol, unit) = (
+                np.round(4.0 * mark.radius),
+                ("ring", mark.rim / RIM) if mark.rim else ("disc", 1.0),
+            )
+            for quarters in sorted(set(fine.tolist())):
+                at = mark.at[fine == quarters]
+                surface.fblits(self._stamps(Stamps(symbol, at, quarters / 4.0, unit, mark.ink, mark.hollow)))
 
     def _text(self, mark: Text) -> _Image:
         key = mark.text, mark.size, mark.colour, mark.weight

@@ -8,6 +8,7 @@ from pinjoint.components import written
 from pinjoint.components.bent import Axes
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import DiagramShown
+from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.render.labels.nearness import ranges
 from pinjoint.systems.render.labels.occupancy import STRONG
 from pinjoint.systems.render.labels.placing import ANCHORS
@@ -30,6 +31,10 @@ _WIDEST_GAP, _GAP_SHARE = 84.0, 0.36  # between a joint and its rod drawn apart:
 _ARC = {"load": 15.0, "reaction": 21.0}  # points, radii of the arrows of moments
 _SWEEP = np.radians(250.0)  # of these arrows
 _PIECES = 20
+_AROUND = np.radians(
+    [90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0]
+)  # where its value stands, corners first
+_AROUND = np.stack([np.cos(_AROUND), -np.sin(_AROUND)], axis=1)
 
 
 def draw_hinges(sheet: Sheet) -> None:
@@ -94,16 +99,13 @@ def draw_distributed_forces(sheet: Sheet) -> None:
 
 def _told(sheet: Sheet, loaded: Rows) -> set[int]:
     """The rods whose value is told: of those with the same force that follow one another, the one in the middle."""
-    chains: list[tuple[set[tuple[float, ...]], list[int]]] = []  # joints of each, and rods
-    force = sheet.model.rods.distributed_force
-    for index in loaded.tolist():
-        row = sheet.rods[index]
-        joints, rods = {(*force[row].tolist(), joint) for joint in sheet.ends[row].tolist()}, [index]
-        for chain in [chain for chain in chains if chain[0] & joints]:
-            chains.remove(chain)
-            joints, rods = joints | chain[0], chain[1] + rods
-        chains.append((joints, rods))
-    return {rods[len(rods) // 2] for _, rods in chains}
+    rows, kinds, chains = sheet.rods[loaded], dict[tuple[float, ...], int](), dict[int, list[int]]()
+    kind = [kinds.setdefault(tuple(f), len(kinds)) for f in sheet.model.rods.distributed_force[rows].tolist()]
+    joints = sheet.ends[rows] + len(sheet.centres) * np.array(kind)[:, None]  # each once for every force
+    joined = lowest_joined(len(sheet.centres) * len(kinds), joints)[joints[:, 0]]
+    for index, chain in zip(loaded.tolist(), joined.tolist(), strict=True):
+        chains.setdefault(chain, []).append(index)
+    return {rods[len(rods) // 2] for rods in chains.values()}
 
 
 def _tips(sheet: Sheet, rows: Rows, along: Points) -> tuple[Rows, Points, Truths]:
@@ -223,9 +225,7 @@ def write_moment(
 ) -> None:
     """Write the size of a moment outside its arrow; text: in place of the number as a person gave it."""
     text = text or f"{written.given(abs(moment), written.DIGITS)}{' kN·m' if sheet.view.has_units else ''}"
-    angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
-    out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
-    near = off(at, out, radius + 2.0 * sheet.unit, half_sizes(sheet, [text]))
+    out, near = _AROUND, off(at, _AROUND, radius + 2.0 * sheet.unit, half_sizes(sheet, [text]))
     places, of = np.concatenate([near, near + 8.0 * sheet.unit * out]), ("particles", key[1])
     anchors, rank = at + radius * out[:5], FIRST - abs(moment)
     write(
