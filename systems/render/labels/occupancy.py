@@ -183,5 +183,5 @@ class Occupancy:
 
 def _are_near(start: Points, end: Points) -> Truths:
     """Which lines begin and end not very far away."""
-    near: Truths = ((np.abs(start) < _FAR) & (np.abs(end) < _FAR)).all(axis=1)
-    return near
+    near: Truths = (np.abs(start) < _FAR) & (np.abs(end) < _FAR)
+    return near[:, 0] & near[:, 1]
