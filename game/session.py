@@ -101,6 +101,23 @@ class Session(Headless):
         self.select(*made)
         return made
 
+    # --- pictures ------------------------------------------------------------------------------------
+
+    def picture(self, path: str | Path, size: tuple[int, int] = (1280, 800), theme: str = "light") -> None:
+        """Draw what is shown now to a .png, .svg, .pdf, .jpg or .bmp file; without bars and panels.
+
+        Raises ValueError for other files, OSError if it cannot be written.
+        """
+        from pinjoint.pictures import render
+
+        render(self, path, size, theme)
+
+    def _repr_png_(self) -> bytes:
+        """What a notebook shows of it."""
+        from pinjoint.pictures import drawn
+
+        return drawn(self, ".png", (960, 600))
+
     # --- scenes and actions --------------------------------------------------------------------------
 
     def plan(self, scene: str | None = None) -> Plan:
