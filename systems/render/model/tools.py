@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
+from pinjoint.components.camera import Rectangle
 from pinjoint.components.view import Preview
 from pinjoint.systems.render.clip import clip_segments
-from pinjoint.systems.render.marks import Fills, Mark, Panel, Points, Stamps, Strokes, Text
+from pinjoint.systems.render.marks import Fills, Mark, Points, Stamps, Strokes
 from pinjoint.systems.render.model.sheet import DIRECTIONS, Sheet
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 from pinjoint.systems.render.theme import Colour, faded
-from pinjoint.systems.render.typography import line_height, text_width
+from pinjoint.systems.render.typography import ALL
+from pinjoint.systems.render.ui.layout import Column, Paper, Plate, Text
 
 _WIDTH = 2.5  # points, of lines
 _APART, _MOST_ARROWS = 26.0, 40  # points between arrows along a rod, and how many there are at most
 _ARC = 24.0  # points, radius of a moment's
 _COILS = 9  # of the spring that pulls
+_REFUSED = 240.0  # points across what is said of something typed
 
 
 def draw_flashes(sheet: Sheet) -> list[Mark]:
@@ -42,7 +46,9 @@ def draw_preview(sheet: Sheet) -> list[Mark]:
     drawn = _KINDS[preview.kind](sheet, start, end)
     for ends in preview.along:
         drawn += _along(sheet, sheet.view.camera.to_pixels(ends), end - start)
-    return [*drawn, *(_label(sheet, preview, end) if preview.label else [])]
+    if preview.typed:
+        end = np.array(sheet.view.pixel)
+    return [*drawn, *(_label(sheet, preview, end) if preview.label or preview.typed else [])]
 
 
 def _rod(sheet: Sheet, start: Points, end: Points) -> list[Mark]:
@@ -135,20 +141,27 @@ def _lines(sheet: Sheet, points: Points, colour: Colour, width: float = _WIDTH) 
 
 
 def _label(sheet: Sheet, preview: Preview, at: Points) -> list[Mark]:
-    """The value beside the end, inside the viewport, where no other label stands."""
+    """The value beside the end, inside the viewport; below what is typed at the pointer, and why that is refused instead."""
     u, v, theme = sheet.unit, sheet.viewport, sheet.theme
-    text, size = preview.label.replace("-", "−"), sheet.font(13.0)
-    width, height = text_width(text, size, "semibold") + 14.0 * u, line_height(size) + 6.0 * u
+    value = Text(preview.label.replace("-", "−"), 13.0, theme.text, "semibold", apart=19.0)
+    lines = [value] if preview.label else []
+    if preview.typed:
+        refused = Text(preview.problem, 12.0, theme.problem, lines=ALL, apart=16.0, wide=_REFUSED)
+        told = [refused] if preview.problem else [replace(value, colour=theme.muted)] * bool(preview.label)
+        lines = [Text(preview.typed.replace("-", "−"), 13.0, theme.text, "semibold", apart=19.0), *told]
+    box = Plate(Column(lines, around=(7.0, 2.0, 2.0)), faded(theme.panel, 0.94), theme.line, radius=5.0)
+    width = min(box.width(u), v.width)
+    height = box.height(u, width)
     left = float(np.clip(at[0] + 14.0 * u, v.left, max(v.right - width, v.left)))
     top = float(np.clip(at[1] - 14.0 * u - height, v.top, max(v.bottom - height, v.top)))
     sheet.occupancy.block(left, top, width, height)
-    return [
-        Panel(left, top, width, height, 5.0 * u, faded(theme.panel, 0.94), theme.line),
-        Text(text, left + 7.0 * u, top + height / 2, size, theme.text, "semibold"),
-    ]
+    paper = Paper(u)
+    paper.put(box, Rectangle(left, top, width, height))
+    return paper.marks
 
 
 _KINDS: dict[str, Callable[[Sheet, Points, Points], list[Mark]]] = {
+    "": lambda sheet, start, end: [],
     "rod": _rod,
     "force": lambda sheet, start, end: _arrow(sheet, start, end, sheet.theme.load),
     "distributed force": lambda sheet, start, end: [],
