@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from pinjoint.components.camera import Rectangle
 from pinjoint.components.view import Preview
 from pinjoint.systems.render.clip import clip_segments
-from pinjoint.systems.render.marks import Fills, Mark, Points, Stamps, Strokes
+from pinjoint.systems.render.marks import Fills, Mark, Panel, Points, Stamps, Strokes, Text
 from pinjoint.systems.render.model.sheet import DIRECTIONS, Sheet
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 from pinjoint.systems.render.theme import Colour, faded
-from pinjoint.systems.render.typography import ALL
-from pinjoint.systems.render.ui.layout import Column, Paper, Plate, Text
+from pinjoint.systems.render.typography import line_height, text_width, wrapped
 
 _WIDTH = 2.5  # points, of lines
 _APART, _MOST_ARROWS = 26.0, 40  # points between arrows along a rod, and how many there are at most
@@ -142,22 +139,26 @@ def _lines(sheet: Sheet, points: Points, colour: Colour, width: float = _WIDTH) 
 
 def _label(sheet: Sheet, preview: Preview, at: Points) -> list[Mark]:
     """The value beside the end, inside the viewport; below what is typed at the pointer, and why that is refused instead."""
-    u, v, theme = sheet.unit, sheet.viewport, sheet.theme
-    value = Text(preview.label.replace("-", "−"), 13.0, theme.text, "semibold", apart=19.0)
-    lines = [value] if preview.label else []
-    if preview.typed:
-        refused = Text(preview.problem, 12.0, theme.problem, lines=ALL, apart=16.0, wide=_REFUSED)
-        told = [refused] if preview.problem else [replace(value, colour=theme.muted)] * bool(preview.label)
-        lines = [Text(preview.typed.replace("-", "−"), 13.0, theme.text, "semibold", apart=19.0), *told]
-    box = Plate(Column(lines, around=(7.0, 2.0, 2.0)), faded(theme.panel, 0.94), theme.line, radius=5.0)
-    width = min(box.width(u), v.width)
-    height = box.height(u, width)
+    u, v, theme, size = sheet.unit, sheet.viewport, sheet.theme, sheet.font(13.0)
+    lines = [(preview.label, theme.muted if preview.typed else theme.text)] * bool(preview.label)
+    if preview.problem:
+        refused = wrapped(preview.problem, _REFUSED * u, size, "semibold")
+        lines = [(line, theme.problem) for line in refused]
+    lines = [(text.replace("-", "−"), ink) for text, ink in ((preview.typed, theme.text), *lines) if text]
+    width = max(text_width(text, size, "semibold") for text, _ in lines) + 14.0 * u
+    apart = line_height(size)
+    height = len(lines) * apart + 6.0 * u
     left = float(np.clip(at[0] + 14.0 * u, v.left, max(v.right - width, v.left)))
     top = float(np.clip(at[1] - 14.0 * u - height, v.top, max(v.bottom - height, v.top)))
     sheet.occupancy.block(left, top, width, height)
-    paper = Paper(u)
-    paper.put(box, Rectangle(left, top, width, height))
-    return paper.marks
+    middles = (top + 3.0 * u + (number + 0.5) * apart for number in range(len(lines)))
+    return [
+        Panel(left, top, width, height, 5.0 * u, faded(theme.panel, 0.94), theme.line),
+        *(
+            Text(text, left + 7.0 * u, middle, size, ink, "semibold")
+            for (text, ink), middle in zip(lines, middles, strict=True)
+        ),
+    ]
 
 
 _KINDS: dict[str, Callable[[Sheet, Points, Points], list[Mark]]] = {
