@@ -32,7 +32,7 @@ _DECIDED = (Particle.asleep, Rod.yielded_at)  # by the run
 _APART: Mapping[str, tuple[Field[Any], ...]] = {
     marked("Cross-section"): (Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment),
     marked("Bending"): (
-        *(Rod.prescribed_bending_stiffness, Rod.hinged, Rod.distributed_force),
+        *(Rod.prescribed_bending_stiffness, Rod.hinged, Rod.end_springs, Rod.distributed_force),
         *(Rod.temperature_gradient, Rod.bending_damping),
     ),
     marked("Rotation"): (
@@ -40,7 +40,8 @@ _APART: Mapping[str, tuple[Field[Any], ...]] = {
         *(Particle.moment, Particle.prescribed_inertia),
     ),
 }
-_OF_BENT_RODS = (Rod.hinged, Rod.temperature_gradient, Rod.bending_damping)  # that mean nothing to others
+# That mean nothing to others.
+_OF_BENT_RODS = (Rod.hinged, Rod.end_springs, Rod.temperature_gradient, Rod.bending_damping)
 _NUMBERS = (float, int)
 _EDITABLE = (*_NUMBERS, bool, str)
 
