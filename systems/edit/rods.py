@@ -119,7 +119,8 @@ def is_rigid(rod: Rod, end: int) -> bool:
 
 
 def set_rigid(model: Model, ends: Iterable[tuple[Rod, int]], rigid: bool, title: str) -> None:
-    """Make ends of rods rigid, or hinge them, in place of springs, as one edit; rods that did not bend are made of what new ones are."""
+    """Make ends of rods rigid, or hinge them, in place of springs, as one edit; rods that did not bend are made of what new
+    ones are."""
     hinged: dict[Rod, list[bool]] = {}
     springs: dict[Rod, list[float]] = {}
     for rod, end in ends:

@@ -40,9 +40,7 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
         *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.density, Rod.thermal_expansion),
         *(Rod.tensile_strength, Rod.compressive_strength, Rod.tension_only),
     ),
-    marked("Supports and joints"): (
-        *(Particle.fixed, Particle.fixed_rotation, Rod.hinged, Rod.end_springs),
-    ),
+    marked("Supports and joints"): (*(Particle.fixed, Particle.fixed_rotation, Rod.hinged, Rod.end_springs),),
     marked("Loads"): (
         *(Particle.force, Particle.moment, Particle.acceleration),
         *(Rod.distributed_force, Rod.temperature_change, Rod.temperature_gradient),

@@ -93,7 +93,8 @@ class Terms:
     """The terms of the sums over axial forces or over bending moments, for m unknowns, in m or rad.
 
     unit: n, (m, rods, 1), or m at both ends, (m, rods, 2). softness: L₀/EA or L₀/EI, 0 of bars (rods,). form: by which two
-    units are multiplied, (rods, 1, 1) or (rods, 2, 2). of_load: n N₀ L/EA or ∫ m M₀ dx/EI; of_free: n ΔL or ∫ m κ dx (m, rods).
+    units are multiplied, (rods, 1, 1) or (rods, 2, 2). of_load: n N₀ L/EA or ∫ m M₀ dx/EI; of_free: n ΔL or ∫ m κ dx
+    (m, rods).
     """
 
     unit: Array
@@ -311,7 +312,13 @@ def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequ
     settled = np.argwhere(moved != 0.0)
     reactions = np.array([unit.reaction for unit in units]).reshape(count, len(moved), 3)[:, *settled.T]
     return Work(
-        Terms(n, softness, np.ones((rods.count, 1, 1)), n[:, :, 0] * base.axial_force * softness, n[:, :, 0] * _free(model)),
+        Terms(
+            n,
+            softness,
+            np.ones((rods.count, 1, 1)),
+            n[:, :, 0] * base.axial_force * softness,
+            n[:, :, 0] * _free(model),
+        ),
         Terms(
             m,
             turning,

@@ -172,8 +172,8 @@ def end_forces(of: Member, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def natural_frequencies(document: Document, parts: int) -> np.ndarray:
     """ω² (rad²/s²), ascending, of a frame whose rods that bend are divided so, with consistent masses.
 
-    An end with a hinge or spring has a rotation of its own. Bars have halves of their masses at their ends, in place of which a mass may be
-    prescribed.
+    An end with a hinge or spring has a rotation of its own. Bars have halves of their masses at their ends, in place of
+    which a mass may be prescribed.
     """
     particles, rods = document["particles"], document["rods"]
     row = {particle["name"]: i for i, particle in enumerate(particles)}
@@ -195,7 +195,11 @@ def natural_frequencies(document: Document, parts: int) -> np.ndarray:
                 stiffness[np.ix_(both, both)] += spring * np.array([[1.0, -1.0], [-1.0, 1.0]])
                 chain[end][2], used = used, used + 1
         for start, end in pairwise(chain):
-            of = member({k: v for k, v in rod.items() if k not in ("rest_length", "end_springs")}, [*start, *end], span / count)
+            of = member(
+                {k: v for k, v in rod.items() if k not in ("rest_length", "end_springs")},
+                [*start, *end],
+                span / count,
+            )
             matrix = of.turned.T @ of.stiffness @ of.turned
             stiffness[np.ix_(of.places, of.places)] += matrix
             weight = rod.get("density", 6.15) * of.length / 1000.0

@@ -26,7 +26,7 @@ EI, EA = 4000.0, 8e5
 
 
 def random_frame(seed: int, *, moves: bool = True) -> dict[str, Any]:
-    """A frame of storeys and bays with braces, hinges, springs at ends, warm members, loads everywhere, and moved supports and clamps."""
+    """A frame of storeys and bays with braces, hinges, springs, warm members, loads and moved supports and clamps."""
     lot = np.random.default_rng(seed)
     bays, storeys = int(lot.integers(1, 4)), int(lot.integers(1, 4))
     particles: list[dict[str, Any]] = []
