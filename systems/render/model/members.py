@@ -260,7 +260,7 @@ def write_spring(
     """Write the stiffness of a spring beside its symbol."""
     angle = np.radians([60.0, 120.0, -60.0, -120.0, 90.0, 0.0, 180.0, -90.0])
     out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
-    text = f"{written.given(stiffness, written.DIGITS)}{f' {unit}' if sheet.view.has_units else ''}"
+    text = f"k = {written.given(stiffness, written.DIGITS)}{f' {unit}' if sheet.view.has_units else ''}"
     _write_around(sheet, at, radius, out, text, sheet.theme.ink, (key, of), 0.0, text)
 
 
