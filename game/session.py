@@ -21,6 +21,7 @@ from pinjoint.components.view import View, lesson_share
 from pinjoint.components.wording import missing
 from pinjoint.documents.format import ModelError, missing_mods
 from pinjoint.documents.open_documents import ModelFile
+from pinjoint.editor.actions.typing import takes_typing, type_with_tool
 from pinjoint.editor.frame import Actions, Exaggerate, Frame, ShowView
 from pinjoint.editor.readouts import readouts
 from pinjoint.editor.routing import Press
@@ -304,6 +305,8 @@ class Session(Headless):
         self._record(TEXT + text, None)
         if self.course is not None and self.course.awaits_number and self.scene in LIVE:
             self.course.type(text)
+        elif takes_typing(self):
+            type_with_tool(self, text)
         else:
             self.scenes.active.type(self, text)
         self.scenes.apply(self)
