@@ -10,7 +10,7 @@ from pinjoint.components.language import LANGUAGES, language, speak, tr
 from pinjoint.components.units import PRESETS, show_in, units_on_screen
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import saving
-from pinjoint.systems.input.actions import ACTIONS, EVERY, IN_PICTURES, Perform, actions_of
+from pinjoint.systems.input.actions import ACTIONS, EVERY, IN_PICTURES, LIVE, Perform, actions_of
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.help import help_pages
 
@@ -58,7 +58,7 @@ def _next_language(context: Context, pixel: Vector) -> None:
     context.notice = tr("Language: {language}", language=LANGUAGES[language()])
 
 
-@action("next units", "shift+f2", "change the units: cm kN, m kN mm, N mm")
+@action("next units", "shift+f2", "change the units: cm kN, m kN mm, N mm", LIVE)
 def _next_units(context: Context, pixel: Vector) -> None:
     """The preset of units after the present one, in which numbers are shown and typed from now on."""
     names = list(PRESETS)
