@@ -10,9 +10,11 @@ from pinjoint.commands.arguments import UsageError
 from pinjoint.commands.command_line import main
 from pinjoint.commands.language import speak_as_asked
 from pinjoint.components.field import FieldError
+from pinjoint.components.form import Form
 from pinjoint.components.units import PRESETS, USUAL, show_in, shown_in, units_on_screen
 from pinjoint.documents.document import document
 from pinjoint.documents.models import load
+from pinjoint.editor.scenes.form import FormScene
 from pinjoint.scripts.playing import play
 from pinjoint.scripts.script import Script
 from pinjoint.systems.render.marks import Text
@@ -30,6 +32,12 @@ def statics(name: str = "portal") -> Session:
     session = Session.open(name)
     session.press("q")
     return session
+
+
+def form_of(session: Session) -> Form:
+    scene = session.scenes.active
+    assert isinstance(scene, FormScene)
+    return scene.form
 
 
 def texts(session: Session) -> set[str]:
@@ -51,7 +59,7 @@ def test_presets_say_all_in_their_units() -> None:
         session.press("return")
         session.update_view()
         session.frame(0.0)
-        readings = {one.title: one.text for one in session.scenes.active.form.readings}
+        readings = {one.title: one.text for one in form_of(session).readings}
         assert {title: readings[title] for title in wanted} == wanted
 
 
@@ -85,7 +93,8 @@ def test_what_is_typed_without_a_unit_is_in_that_on_screen() -> None:
     session.select(session.rods["BC"])
     session.press("return")
     session.click_box("rest length")
-    box = session.scenes.active.form.selected
+    box = form_of(session).selected
+    assert box is not None
     assert (box.unit, box.text) == ("mm", "6000")
     session.type("6100")
     session.press("return")
@@ -108,7 +117,9 @@ def test_limits_are_told_in_the_unit_on_screen() -> None:
     session.press("return")
     session.click_box("radius")
     session.type("-1")
-    assert session.scenes.active.form.selected.problem == "must be greater than 0 m"
+    box = form_of(session).selected
+    assert box is not None
+    assert box.problem == "must be greater than 0 m"
 
 
 def test_files_stay_as_they_are(tmp_path: Path) -> None:
