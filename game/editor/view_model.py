@@ -191,13 +191,13 @@ def follows(context: Context) -> bool:
 def _point_out(context: Context) -> None:
     """Say what the element under the pointer does now, in the view that shows it, and what the pinned place does."""
     model, view = context.stages[0]
-    found = model.tagged(Hovered) if isinstance(model, Model) else []
-    view.pointer = context.view.pointer
-    rows = told(model, found[0], forces_known=view.forces_known) if found else []
-    pointed = Readout(model.describe(found[0]), tuple(rows)) if rows else None
-    if found and isinstance(rod := found[0], Rod) and view.pointer is not None:
-        place = distance_at(model, view, rod, view.pointer)
-        pointed = pointed if place is None else along(model, rod, place)
+    view.pointer, pointed = context.view.pointer, None
+    if isinstance(model, Model) and (hovered := model.tagged(Hovered)):
+        rows = told(model, hovered[0], forces_known=view.forces_known)
+        pointed = Readout(model.describe(hovered[0]), tuple(rows)) if rows else None
+        if isinstance(rod := hovered[0], Rod) and view.pointer is not None:
+            place = distance_at(model, view, rod, view.pointer)
+            pointed = pointed if place is None else along(model, rod, place)
     view.pointed = context.view.pointed = pointed
     if (pin := context.view.pin) is not None:
         shown = pinned(context) is not None
