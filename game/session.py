@@ -24,7 +24,7 @@ from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.actions.typing import takes_typing, type_with_tool
 from pinjoint.editor.frame import Actions, Exaggerate, Frame, ShowView
 from pinjoint.editor.readouts import readouts
-from pinjoint.editor.routing import Press
+from pinjoint.editor.routing import BUTTONS, Press
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
 from pinjoint.editor.sliders import sliders_of
@@ -196,6 +196,8 @@ class Session(Headless):
             return
         pixel = self.view.pixel if pixel is None else _near(pixel)
         press = Press(self, key, pixel)
+        if key in BUTTONS and self.course is not None:
+            self.course.writes = False
         here = self.scene, self.view.menu is not None, self.view.help > 0, press.hit and press.hit.action
         if key == "double click" and self._clicked not in (None, here):
             return  # its first click led here, and the second is not meant for what is here
