@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.model import Model
+from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.rod import bends
 from pinjoint.systems.physics.bending import slopes
 
@@ -179,8 +180,9 @@ def spectrum(model: Model, axial_force: Array, counts: NDArray[np.bool_] | None 
     """
     rods, particles = model.rods, model.particles
     decay = 0.5 * model.environment.drag
+    sprung = highest_sprung(model)
     if rods.count == 0 or not ((particles.mobility > 0.0).any() or particles.turning.any()):
-        return Spectrum(0.0, decay)
+        return Spectrum(math.sqrt(sprung), decay)
     share = np.ones(rods.count) if counts is None else counts.astype(np.float64)
     tension = share * np.maximum(axial_force, 0.0)
     along, damping = share * rods.stiffness / rods.rest_length, share * rods.damping
@@ -190,5 +192,11 @@ def spectrum(model: Model, axial_force: Array, counts: NDArray[np.bool_] | None 
         dampers = operator_of(model, damping, of_ends)
         decay += 0.5 * _largest_eigenvalue(dampers, width)
     stiffness = operator_of(model, along, ends, tension)
-    highest = _largest_eigenvalue(stiffness, width)
+    highest = _largest_eigenvalue(stiffness, width) + sprung
     return Spectrum(math.sqrt(highest), decay)
+
+
+def highest_sprung(model: Model) -> float:
+    """The highest ω² of particles on springs of supports alone, by which these raise any ω² at most."""
+    mobility = np.column_stack([model.particles.mobility, model.particles.turning])
+    return float((spring_stiffness(model) * mobility).max(initial=0.0))
