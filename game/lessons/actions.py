@@ -79,6 +79,7 @@ def _leave(session: Session, pixel: Vector) -> None:
 
 
 action("erase answer", while_drawing=True)(lambda session, pixel: _course(session).erase())
+action("clear answer", while_drawing=True)(lambda session, pixel: _course(session).erase(whole=True))
 for _number in range(MOST_ANSWERS):
     action(f"answer {_number + 1}", while_drawing=True)(
         lambda session, pixel, number=_number: _course(session).choose(number)
