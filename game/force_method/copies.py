@@ -130,15 +130,12 @@ def _release(model: Model, unknown: Unknown) -> None:
     if unknown.of_bar:
         model.delete([model.rods[name]])
     elif unknown.of_end:
-        start, end = model.rods[name].hinged
-        model.rods[name].hinged = (start or axis == 0, end or axis == 1)
-        start, end = model.rods[name].end_springs
-        model.rods[name].end_springs = (start * (axis != 0), end * (axis != 1))
+        rod, kept = model.rods[name], np.arange(2) != axis
+        rod.hinged = tuple((np.array(rod.hinged) | ~kept).tolist())
+        rod.end_springs = tuple((np.array(rod.end_springs) * kept).tolist())
     elif axis == 2:
         model.particles[name].fixed_rotation, model.particles[name].rotation_spring = False, 0.0
     else:
-        particle = model.particles[name]
-        x, y = particle.fixed
-        particle.fixed = (x and axis != 0, y and axis != 1)
-        x, y = particle.support_springs
-        particle.support_springs = (x * (axis != 0), y * (axis != 1))
+        particle, kept = model.particles[name], np.arange(2) != axis
+        particle.fixed = tuple((np.array(particle.fixed) & kept).tolist())
+        particle.support_springs = tuple((np.array(particle.support_springs) * kept).tolist())

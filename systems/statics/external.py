@@ -61,7 +61,8 @@ class External:
             scaled = np.column_stack([scaled, np.where(turns, moment, 0.0)])
             steady = np.column_stack([steady, np.zeros(particles.count)])
         if theory == FIRST_ORDER:
-            scaled[alone := ~nodes(model) & ~particles.support_springs.any(axis=1)] = steady[alone] = 0.0
+            alone = ~nodes(model) & ~particles.support_springs.any(axis=1)
+            scaled[alone] = steady[alone] = 0.0
         return cls(scaled, steady, tuple(notes))
 
     def at(self, factor: float) -> Array:

@@ -288,6 +288,6 @@ def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Arra
     unit[row, axis] = 1.0
     if quantity in ("displacement", "rotation"):
         return theory.deflection(unit)
-    if spring := structure.springs[row, axis]:
+    if spring := float(structure.springs[row, axis]):
         return -spring * theory.deflection(unit)
     return theory.deflection(structure.resistance(unit)) - unit

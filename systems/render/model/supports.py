@@ -143,7 +143,7 @@ def _stand(sheet: Sheet, symbol: str, side: int, of: Rows) -> Points:
     rim = np.where(coiled, _SPIRAL * sheet.unit, sheet.radii[of] - sheet.unit)
     apex = sheet.centres[of] + DIRECTIONS[side] * rim[:, None]
     _stamp(sheet, symbol, apex, side, of)
-    middle = apex + DIRECTIONS[side] * size / 2
+    middle: Points = apex + DIRECTIONS[side] * size / 2
     sheet.occupancy.parts.add(("particles", of), middle, middle, size / 2)
     sheet.occupancy.block_squares(middle[:MANY], np.full(len(middle[:MANY]), size / 2))
     return middle
