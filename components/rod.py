@@ -397,6 +397,11 @@ def is_warm(world: World) -> bool:
     return bool(world.tables["rods"].temperature_change.any())
 
 
+def is_warped(world: World) -> bool:
+    """True if some rod that bends is warmer on one side."""
+    return bool(world.tables["rods"].initial_slopes.any())
+
+
 def bends(world: World) -> bool:
     """True if some rod has bending stiffness, and an end that is not hinged."""
     rods = world.tables["rods"]

@@ -181,7 +181,7 @@ class App:
         self.session.autosave = self.autosave = autosave
         self.preparation = preparation
         if preparation is not None:
-            self.session.waits_for = preparation.waits_for
+            self.session.readiness = preparation
             preparation.open()
         self._chosen = self._choices()
         self._magnification = magnification

@@ -206,7 +206,7 @@ class Session(Headless):
         elif press.action is not None:
             self.notice, self._clicked = "", here if key == "click" else None
             self._record(key, pixel)
-            if self.scenes.time_passes and self.has_program(self.simulation):
+            if self.scenes.time_passes and self.readiness.lets(self.simulation):
                 self.document.get_ready()
             self.view.pressed = press.hit
             left = self._left_for_tools() if press.for_tools else ""
@@ -335,8 +335,8 @@ class Session(Headless):
         if not (math.isfinite(x) and math.isfinite(y)):
             raise WrongValue("The point is ({x}, {y}); give finite coordinates, in m.", x=x, y=y)
         self.scenes.active.finish()
-        x, y = _near(self.focus[1].camera.to_pixels((x, y)).tolist())
-        self.focus[1].pointer = x, y
+        view = self.stages[0][1]
+        view.pointer = x, y = _near(view.camera.to_pixels((x, y)).tolist())
         return x, y
 
     def click(self, x: float, y: float, button: str = "click") -> None:

@@ -56,7 +56,7 @@ class Press:
         if self._key not in _AT_POINTER or view.menu is not None or view.help or scene.covers(context):
             return False
         in_form = self._key == "right click" and context.scene in FORMS
-        beside = in_form and not context.focus[1].covers(self._pixel)
+        beside = in_form and not context.stages[0][1].covers(self._pixel)
         return beside or view.strip.contains(self._pixel)
 
     def _meaning(self) -> tuple[str | None, Vector]:

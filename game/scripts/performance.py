@@ -137,7 +137,7 @@ class Performance:
         at = entry.get("over") or entry.get("click") or (entry.get("drag") or [None])[0]
         if not isinstance(at, list) or len(at) != 2:
             return None
-        x, y = self._screen.session.focus[1].camera.to_pixels((float(at[0]), float(at[1]))).tolist()
+        x, y = self._screen.session.stages[0][1].camera.to_pixels((float(at[0]), float(at[1]))).tolist()
         return x, y
 
     def _watch(self, entry: Mapping[str, Any]) -> None:
@@ -175,7 +175,7 @@ class Performance:
     def _wait_for_program(self) -> None:
         """Let frames pass while the step program is compiled."""
         session = self._screen.session
-        while not self._ended and not session.has_program(session.simulation):
+        while not self._ended and not session.readiness.lets(session.simulation):
             self._frame()
 
     def _watch_time(self) -> int:

@@ -75,7 +75,7 @@ class PygameInput(System):
     def process(self, frame: Any) -> None:
         """Collect the events since the last frame; sleep a little if nothing can happen without one."""
         session, events = frame.session, pygame.event.get()
-        waiting = session.awaited is not None
+        waiting = session.readiness.awaited is not None
         if not events and session.footer is None and (waiting or not session.busy):
             events = _awaited(WAITING_LOOKS if waiting else IDLE_LOOKS)
         for event in events:
