@@ -320,7 +320,7 @@ def _heed_names(table: Table[Any], rows: NDArray[np.intp], changed: Collection[s
         for name, number in _contradictions(rod, changed):
             if not alone:
                 field, value = table.fields[number], getattr(rod, number)
-                unit, factor = field.shown
+                unit, factor = field.on_screen
                 raise FieldError(
                     "{rod}: {title} is {value:.6g} {unit}, but {name} has another value; leave out one of the two.",
                     rod=world.describe(rod),

@@ -20,6 +20,7 @@ from pinjoint.components.field import Vector
 from pinjoint.components.language import language, tr
 from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
+from pinjoint.components.units import units_on_screen
 from pinjoint.components.view import MAGNIFICATIONS, View, magnified
 from pinjoint.documents import library, models
 from pinjoint.documents.autosave import Autosave, unkept
@@ -335,10 +336,11 @@ class App:
 
     def _choices(self) -> dict[str, str]:
         """What the person has chosen; not what a script that is performed shows."""
-        view = self.session.view
-        shown = (
-            {} if self.session.footer is not None else {"language": language(), "convention": view.convention}
-        )
+        view, shown = self.session.view, dict[str, str]()
+        if self.session.footer is None:
+            shown = {"language": language(), "convention": view.convention}
+        if self.session.footer is None and self.session.course is None:  # lessons name the usual units
+            shown["units"] = units_on_screen()
         return {"theme": view.theme, **shown}
 
     def _follow_choices(self) -> None:

@@ -12,6 +12,7 @@ from pinjoint.components.language import decimals, joined, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.settings import PAUSE, STATICS
 from pinjoint.components.toolbar import Tool
+from pinjoint.components.units import USUAL, show_in, units_on_screen
 from pinjoint.components.view import Card, Shape, View
 from pinjoint.documents.document import document
 from pinjoint.documents.models import ModelError, load
@@ -35,11 +36,13 @@ class Course:
 
     view: of its card, in the part of the window that it takes. at: the number of the task, from 0. accepted: it is done.
     choice, typed: the choice that was made, or what was typed. writes: keys are part of that, until it is checked or
-    something is clicked. home: the mode from which it was begun.
+    something is clicked. home, units: the mode and the units on screen from which it was begun.
     """
 
     def __init__(self, session: Any, lesson: Lesson) -> None:
         self._session, self.lesson = session, lesson
+        self.units = units_on_screen() if session.course is None else session.course.units
+        show_in(USUAL)  # which the texts of lessons name
         self.home = session.scenes.hub if session.course is None else session.course.home
         self.view = View()
         self.at = 0
@@ -386,6 +389,8 @@ def take_up_lesson(session: Any) -> None:
 def leave_lesson(session: Any) -> None:
     """Leave the lesson for the document that was open before it."""
     home = PAUSE if session.course is None else session.course.home
+    if session.course is not None:
+        show_in(session.course.units)
     _seat(session, None)
     session.scenes.request_from_pause(PAUSE)
     session.scenes.apply(session)

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, spoken, tr
+from pinjoint.components.units import shown_in
 from pinjoint.components.view import Page, Status, View
 from pinjoint.documents import library
 from pinjoint.documents.open_documents import ModelFile
@@ -67,7 +68,7 @@ class Performance:
         The script saves in a folder of its own; afterwards its models count as unsaved work.
         """
         apart = nullcontext() if self._script.has_data else library.data_in()
-        with apart as folder, spoken(self._script.language):
+        with apart as folder, spoken(self._script.language), shown_in(self._script.units):
             failures = self._perform_all()
         for document in self._screen.session.documents:
             if document.file.path is not None and folder in document.file.path.parents:
