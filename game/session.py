@@ -17,6 +17,7 @@ from pinjoint.components.mistake import Mistake, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod, bends
 from pinjoint.components.settings import NO_DIAGRAMS, PAUSE, STATICS
+from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import View, lesson_share
 from pinjoint.components.wording import missing
 from pinjoint.documents.format import ModelError, missing_mods
@@ -214,6 +215,22 @@ class Session(Headless):
                 self.act(press.action, press.at)
         elif self.scene in _SAID and (found := ACTIONS.at(PAUSE, key)) and not ACTIONS.at(self.scene, key):
             self.notice = tr(_SAID[self.scene], action=begun(tr(found[1].title)))
+
+        elif key == "click" and press.hit is not None and isinstance(press.hit.item, Tool):
+            self._say_why_not(press.hit.item)
+
+    def _say_why_not(self, tool: Tool) -> None:
+        """Say why a button does nothing now, as its key does, which would take a tool in hand, though."""
+        self.notice = ""
+        if tool.key and not ACTIONS[tool.action].hint:
+            self.press(tool.key)
+        binding = ACTIONS.offer(tool.action, self.scene)
+        if binding is not None and not self.notice:
+            scenes = listed([tr(scene) for scene in binding.scenes])
+            here = self.scene in binding.scenes
+            said = marked("{action}: there is nothing here yet that it could act on.")
+            said = said if here else marked("{action}: only in {scenes}.")
+            self.notice = tr(said, action=begun(tool.title), scenes=scenes)
 
     def _record(self, key: str, pixel: Vector | None) -> None:
         if self.recorder is not None:

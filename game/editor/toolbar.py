@@ -155,9 +155,10 @@ def _of_canvas(context: Context) -> Groups:
             *("toggle table", "toggle theory", "toggle energy", "toggle events"),
         ],
         [*of_mods(draw=False)],
-        ["fit", "new grid", "next grid", "toggle legend", "next theme", "next language", "next units"],
+        ["fit", "new grid", "next grid", "toggle legend", "next theme", "next language"],
         [
             "environment",
+            "next units",
             "toggle full screen",
             "toggle help",
             "screenshot",
