@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pinjoint.components.field import Vector
 from pinjoint.components.view import Hit, Readout
+from pinjoint.editor.actions.typing import takes_typing, typed
 from pinjoint.editor.context import Context
+from pinjoint.systems.edit.typed import BEGINS
 from pinjoint.systems.input.actions import ACTIONS, FORMS, LIVE, MENU, TABLE
 from pinjoint.systems.render.picture import hits_at
 from pinjoint.systems.render.theme import load_theme
@@ -14,7 +16,8 @@ from pinjoint.systems.render.ui.menu import pointed_at
 BUTTONS = ("click", "ctrl+click", "double click", "drag", "ctrl+drag", "right click")
 WHEEL = ("wheel up", "wheel down")
 _AT_POINTER = (*BUTTONS, *WHEEL)
-DIGITS = frozenset("0123456789.,-+")
+_OF_TYPED = {"return": "accept typed", "backspace": "erase typed", "escape": "leave typed"}
+_OF_ANSWER = {"backspace": "erase answer", "delete": "clear answer", "ctrl+a": ""}
 
 
 class Press:
@@ -53,13 +56,13 @@ class Press:
         if self._key not in _AT_POINTER or view.menu is not None or view.help or scene.covers(context):
             return False
         in_form = self._key == "right click" and context.scene in FORMS
-        beside = in_form and not context.focus[1].covers(self._pixel)
+        beside = in_form and not context.stages[0][1].covers(self._pixel)
         return beside or view.strip.contains(self._pixel)
 
     def _meaning(self) -> tuple[str | None, Vector]:
         """The action, if any, and where it acts."""
         view, key, pixel, hit = self._context.view, self._key, self._pixel, self.hit
-        if (answer := self._to_lesson()) is not None:
+        if (answer := self._to_lesson()) is not None or (answer := self._to_tool()) is not None:
             return answer or None, pixel
         if view.menu is not None and key in BUTTONS and pixel == view.menu.pointed:
             return "close menu", pixel  # the pointer has not moved: what came to lie under it is not meant
@@ -101,6 +104,19 @@ class Press:
             return None
         return hit.action or None
 
+    def _to_tool(self) -> str | None:
+        """The action for what is typed with a tool in hand; "": the key is part of the text; None: it is not for it."""
+        context, key = self._context, self._key
+        if not takes_typing(context):
+            return None
+        if typed(context) and key in _OF_TYPED:
+            return _OF_TYPED[key]
+        return "" if self._is_typed(begun=bool(typed(context))) else None
+
+    def _is_typed(self, *, begun: bool) -> bool:
+        """True if the key is part of a number or its unit; begun: its beginning was typed already."""
+        return self._key in BEGINS or (begun and (len(self._key) == 1 or self._key == "space"))
+
     def _to_lesson(self) -> str | None:
         """The action for the lesson that a person is in; "": it means nothing; None: it is not for it."""
         context, key = self._context, self._key
@@ -109,6 +125,10 @@ class Press:
             return None
         if course.awaits_choice and key in "123456789" and len(key) == 1:
             return f"answer {key}"
-        if course.awaits_number and (key in DIGITS or (course.typed and key == "backspace")):
-            return "" if key in DIGITS else "erase answer"
+        if course.awaits_number and course.typed and key in _OF_ANSWER:
+            return _OF_ANSWER[key]
+        if course.writes and key == "escape":
+            return "clear answer"
+        if course.awaits_number and self._is_typed(begun=course.writes):
+            return ""
         return "check answer" if key == "return" and course.takes_return else None

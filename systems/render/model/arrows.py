@@ -212,6 +212,9 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
     taken = np.full((len(sheet.centres), 2), NO_SUPPORT)  # by reactions: a side of each particle, by axis
     applied = particles.applied_force - distributed_shares(sheet.model)  # rows of arrows show the others
+    if sheet.model.first_order:
+        left_out = ~nodes(sheet.model)
+        applied[left_out] = full_load(sheet.model)[left_out, :2]
     for name, force in (("reaction", particles.reaction[shown]), ("load", applied[shown])):
         index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST))
         if len(index):
@@ -310,7 +313,7 @@ def _write_forces(
     few = len(value) <= FEW_VALUES
     seen = np.flatnonzero(sheet.sees(0.5 * (start + end)))
     shown, worth = most_important(sheet, field, which, value, seen)
-    texts = [said(sheet, size, "kN" if few else "") for size in np.abs(value[shown]).tolist()]
+    texts = [said(sheet, size, "kN", bare=not few) for size in np.abs(value[shown]).tolist()]
     font = sheet.font(12.0 if few else 11.0)
     half, start, end = half_sizes(sheet, texts, font), start[shown], end[shown]
     places = by_arrows(half, start, end, _BY_ARROW * sheet.unit)
@@ -330,5 +333,5 @@ def _write_forces(
             own=key,
             leads=leads,
             size=font,
-            short=said(sheet, abs(float(value[index])), "") if few else "",
+            short=said(sheet, abs(float(value[index])), "kN", bare=True) if few else "",
         )

@@ -12,14 +12,34 @@ from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.render.labels.nearness import ranges
 from pinjoint.systems.render.labels.occupancy import STRONG
 from pinjoint.systems.render.labels.placing import ANCHORS
-from pinjoint.systems.render.marks import Discs, Fills, Owners, Points, Rows, Strokes, Truths, Values
+from pinjoint.systems.render.marks import (
+    Discs,
+    Fills,
+    Owners,
+    Points,
+    Rows,
+    Stamps,
+    Strokes,
+    Truths,
+    Values,
+)
 from pinjoint.systems.render.model.arrows import MOST, draw_arrows, full_load, head_length
 from pinjoint.systems.render.model.sheet import Sheet
-from pinjoint.systems.render.model.values import FIRST, SMALLEST, half_sizes, off, said, write
+from pinjoint.systems.render.model.values import (
+    FIRST,
+    SMALLEST,
+    half_sizes,
+    off,
+    said,
+    write,
+    write_around,
+    write_spring,
+)
 from pinjoint.systems.render.symbols import RIM
 from pinjoint.systems.render.theme import Colour
 
 _HINGE = 3.5  # points, radius of a hinge beside a joint
+_SPIRAL = 6.0  # likewise of a spring
 _SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn
 # Points, lengths of the arrows of the smallest and the largest distributed force, usually and beside diagrams.
 _ROW, _LOW_ROW = (11.0, 22.0), (5.0, 11.0)
@@ -31,19 +51,20 @@ _WIDEST_GAP, _GAP_SHARE = 84.0, 0.36  # between a joint and its rod drawn apart:
 _ARC = {"load": 15.0, "reaction": 21.0}  # points, radii of the arrows of moments
 _SWEEP = np.radians(250.0)  # of these arrows
 _PIECES = 20
-_AROUND = np.radians(
-    [90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0]
-)  # where its value stands, corners first
+# Ways from the middle of such an arrow to its value, corners first.
+_AROUND = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])
 _AROUND = np.stack([np.cos(_AROUND), -np.sin(_AROUND)], axis=1)
 
 
 def draw_hinges(sheet: Sheet) -> None:
-    """Open circles at the ends of rods that turn freely at joints of others that do not, beside these joints."""
+    """Open circles at the ends of rods that turn freely at joints of others that do not, beside these joints; spirals, with
+    their stiffness, at those that springs join."""
     model = sheet.model
     if not sheet.is_frame or not len(sheet.rods):
         return
     rigid, u = rigid_joints(model), sheet.unit
-    free = (model.rods.turning_shares[sheet.rods] == 0.0) & rigid[sheet.ends[sheet.rods]]
+    fixity = model.rods.fixity[sheet.rods]
+    free = (fixity < 1.0) & rigid[sheet.ends[sheet.rods]]
     length = np.hypot(*(sheet.end - sheet.start).T)
     free &= (length > 2.0 * _SHORTEST * _HINGE * u)[:, None]
     which, end = np.nonzero(free)
@@ -54,12 +75,23 @@ def draw_hinges(sheet: Sheet) -> None:
     out = tangent[np.arange(len(rows)), end] * np.where(end == 0, 1.0, -1.0)[:, None]
     out /= np.maximum(np.hypot(*out.T), 1e-300)[:, None]
     joint = sheet.ends[rows, end]
-    at = sheet.centres[joint] + (sheet.radii[joint] + (_HINGE + 0.5) * u)[:, None] * out
-    radius = np.full(len(at), _HINGE * u)
-    sheet.marks.append(Discs(at, radius, sheet.theme.ink, sheet.theme.hollow, RIM * u, ("rods", rows)))
+    sprung = fixity[which, end] > 0.0
+    radius = np.where(sprung, _SPIRAL, _HINGE) * u
+    at = sheet.centres[joint] + (sheet.radii[joint] + radius + 0.5 * u)[:, None] * out
     sheet.occupancy.parts.add(("rods", rows), at, at, radius)
     sheet.occupancy.block_squares(at, radius)
-    sheet.explain("hinge", at, at)
+    sheet.explain("hinge", at[~sprung], at[~sprung])
+    sheet.explain("spring", at[sprung], at[sprung])
+    ink, hollow = sheet.theme.ink, sheet.theme.hollow
+    if not sprung.all():
+        some, of = ~sprung, ("rods", rows[~sprung])
+        sheet.marks.append(Discs(at[some], radius[some], ink, hollow, RIM * u, of))
+    if sprung.any():
+        sheet.marks.append(Stamps("spiral", at[sprung], _SPIRAL * u, u, ink, hollow, of=("rods", rows[sprung])))
+    for k in np.flatnonzero(sprung)[:MOST].tolist():
+        row, side = int(rows[k]), int(end[k])
+        stiffness, key = float(model.rods.end_springs[row, side]), ("rods.end_springs", 2 * row + side)
+        write_spring(sheet, at[k], _SPIRAL * u, stiffness, "kN·m/rad", key, ("rods", row))
 
 
 def gaps(lengths: Values, unit: float) -> Values:
@@ -131,7 +163,7 @@ def _tips(sheet: Sheet, rows: Rows, along: Points) -> tuple[Rows, Points, Truths
 
 
 def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float, shifted: bool) -> None:
-    text, u = f"{written.given(size, written.DIGITS)} kN/m", sheet.unit
+    text, u = written.stated(size, "kN/m", written.DIGITS), sheet.unit
     way, out = tails[-1] - tails[0], -along
     if shifted:
         out = np.array([way[1], -way[0]]) / max(float(np.hypot(*way)), 1e-9)
@@ -224,19 +256,8 @@ def write_moment(
     sheet: Sheet, at: Points, radius: float, moment: float, colour: Colour, key: tuple[str, int], text: str = ""
 ) -> None:
     """Write the size of a moment outside its arrow; text: in place of the number as a person gave it."""
-    text = text or f"{written.given(abs(moment), written.DIGITS)}{' kN·m' if sheet.view.has_units else ''}"
-    out, near = _AROUND, off(at, _AROUND, radius + 2.0 * sheet.unit, half_sizes(sheet, [text]))
-    places, of = np.concatenate([near, near + 8.0 * sheet.unit * out]), ("particles", key[1])
-    anchors, rank = at + radius * out[:5], FIRST - abs(moment)
-    write(
-        sheet,
-        text,
-        places,
-        colour,
-        key,
-        of,
-        rank=rank,
-        own=key,
-        leads=(anchors, out[0]),
-        short=text if key[0] == "particles.reaction_moment" else "",
-    )
+    bare = written.given(abs(moment), written.DIGITS)
+    text = text or (written.stated(abs(moment), "kN·m", written.DIGITS) if sheet.view.has_units else bare)
+    short = text if key[0] == "particles.reaction_moment" else ""
+    of = key, ("particles", key[1]), key
+    write_around(sheet, at, radius, _AROUND, text, colour, of, abs(moment), short)
