@@ -12,6 +12,7 @@ from pinjoint.documents import models
 from pinjoint.documents.autosave import Autosave
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.scenes.properties import Properties
+from pinjoint.lessons.judging import named
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from tests.reference.hits import hits_in
@@ -70,14 +71,14 @@ class Hand:
         self.down(button)
         pressed = tuple(int(n == button) for n in (1, 2, 3))
         for share in (0.3, 0.6, 1.0):
-            place = (start[n] + share * (end[n] - start[n]) for n in (0, 1))
-            self.move(*place, pressed)
+            x, y = (start[n] + share * (end[n] - start[n]) for n in (0, 1))
+            self.move(x, y, pressed)
         self.up(button)
 
     @property
     def selected(self) -> list[str]:
         """The names of what is selected."""
-        return sorted(one.name for one in self.session.selected)
+        return sorted(map(named, self.session.selected))
 
     @property
     def texts(self) -> list[str]:
