@@ -184,8 +184,9 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     particles, occupancy = np.flatnonzero(seen), Occupancy(viewport, unit)
     placed = {} if placed is None else placed
     seen_of = rods, start, end, particles
-    rest = occupancy, placed, rod_length, frame, curved
-    return Sheet(model, view, theme, unit, centres, radii, ends, *seen_of, *rest)
+    found = Sheet(model, view, theme, unit, centres, radii, ends, *seen_of, occupancy, placed, rod_length)
+    found.is_frame, found.curved = frame, curved
+    return found
 
 
 def _visible(lines: Lines, rods: Rows, view: View, within: tuple[Points, Points]) -> Lines:

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.field import Vector
-from pinjoint.systems.render.backends.kernels import cover_strokes
+from pinjoint.systems.render.backends.kernels import BLOCK, cover_strokes
 from pinjoint.systems.render.backends.pygame_canvas import Canvas, _fill, _pixel, _pixels
-from pinjoint.systems.render.backends.raster import BLOCK, load_raster, stroke_coverage
+from pinjoint.systems.render.backends.raster import load_raster, stroke_coverage
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Picture, Points, Strokes
 
 BLACK, WHITE = (0, 0, 0, 255), (255, 255, 255, 255)
