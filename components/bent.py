@@ -219,7 +219,7 @@ def _drift(length: Array, cubic: Array) -> tuple[Array, NDArray[np.bool_]]:
     slopes = cubic[:, [1, 3]] / np.where(length > 0.0, length, 1.0)[:, None]
     slopes[:, 1] -= slopes[:, 0]  # the cubic has φ_s and φ_s + φ_e
     steep = np.minimum(np.abs(slopes), _STEEPEST)
-    is_steep: NDArray[np.bool_] = (steep > _STEEP).any(axis=1)
+    is_steep: NDArray[np.bool_] = np.logical_or(*(steep > _STEEP).T)
     if not is_steep.any():
         return np.zeros_like(cubic), is_steep
     shorter = np.where(steep > _STEEP, steep / np.tan(np.maximum(steep, _STEEP)) - 1.0, -(steep**2) / 3.0)
