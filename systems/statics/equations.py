@@ -364,7 +364,12 @@ class Structure:
     @cached_property
     def initial_tangent(self) -> Matrix:
         """The tangent at the original positions, without axial forces and with taut cables."""
-        return self.tangent(self.unmoved, np.zeros(len(self.ends), dtype=bool), geometric=False)
+        return self.assembly.matrix(self.stiffnesses.ravel())
+
+    @property
+    def stiffnesses(self) -> Array:
+        """k of every rod at the original positions, in the axes of the plane, (rods, 2, width, 2, width)."""
+        return self.tangents(self.unmoved, np.zeros(len(self.ends), dtype=bool), geometric=False)
 
     def respond(self, displacement: Array, plastic_strain: Array, share: float = 0.0) -> Response:
         """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p.
@@ -535,7 +540,14 @@ class Structure:
     # --- tangent -------------------------------------------------------------------------------------
 
     def tangent(self, response: Response, soft: Flags, *, geometric: bool = True) -> Matrix:
-        """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of soft rods) + Σ N/L (1 − a aᵀ), and what bending adds."""
+        """dF/du over the unknowns, the sum of what every rod adds."""
+        return self.assembly.matrix(self.tangents(response, soft, geometric=geometric).ravel())
+
+    def tangents(self, response: Response, soft: Flags, *, geometric: bool) -> Array:
+        """dF/du of every rod over the coordinates of both ends, (rods, 2, width, 2, width).
+
+        EA/L₀ a aᵀ (not of soft rods) + N/L (1 − a aᵀ), and what bending adds.
+        """
         along = np.where(soft, 0.0, self.stiffness / self.rest_length)
         across = np.zeros_like(along)
         geometric = geometric and not self.first_order
@@ -554,7 +566,7 @@ class Structure:
                 response.bent, along, response.axial_force, a, response.length, geometric
             ).reshape(-1, 2, 3, 2, 3)
             parts[:, :, :2, :, :2] += bars
-        return self.assembly.matrix(parts.ravel())
+        return parts
 
     @property
     def deformations(self) -> int:
