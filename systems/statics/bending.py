@@ -49,6 +49,7 @@ class Bending:
     end_stiffness: Array
     bowing: Array
     turning_shares: Array
+    fixity: Array
     initial_slopes: Array
     load_shares: Array
     distributed_force: Array

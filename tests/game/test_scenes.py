@@ -41,7 +41,7 @@ def test_there_are_eight_and_pause_is_the_first(session: Session) -> None:
 @pytest.mark.parametrize("start", SCENES)
 @pytest.mark.parametrize("target", SCENES)
 def test_pause_and_statics_are_hubs(session: Session, start: str, target: str) -> None:
-    """From a hub to any other, from any other to a hub, from a method to the other one, and nothing else; a run ends in pause."""
+    """From a hub to any other, from any other to a hub, between methods, and nothing else; a run ends in pause."""
     go(session, start)
     beside = start.endswith("method") and target.endswith("method")
     if start != target and (

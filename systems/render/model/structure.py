@@ -129,7 +129,7 @@ def draw_halos(sheet: Sheet) -> None:
 
 
 def draw_rods(sheet: Sheet) -> None:
-    """A line between the drawn positions of the ends, violet while yielding.
+    """A line between the drawn positions of the ends, magenta while yielding.
 
     Cables are thin, and dashed while they are slack.
     """
@@ -243,7 +243,7 @@ def draw_shape(sheet: Sheet) -> None:
     if shape.rotation is not None:
         moving |= shape.rotation != 0.0
     parts = replace(
-        parts, between=parts.between[(drawn := moving[parts.between].any(axis=1))], rigid=parts.rigid[drawn]
+        parts, between=parts.between[(drawn := moving[parts.between].any(axis=1))], fixity=parts.fixity[drawn]
     )
     start, end = farthest = _lines_of_shape(sheet, shape, position, parts, 1.0)
     if swing != 1.0:
