@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.field import CM, Field, FieldError, Vector, derived, if_known, state
+from pinjoint.components.field import CM, MOVED, Field, FieldError, Vector, derived, if_known, state
 from pinjoint.components.handle import Handle
 from pinjoint.components.table import Store, Table, flags
 
@@ -26,7 +26,7 @@ class Particle(Handle):
         "m", shape=(2,), title="original position", doc="Where it was drawn, before any displacement.", shown=CM
     )
     displacement: Field[Vector] = state(
-        "m", shape=(2,), doc="Present position minus original position.", shown=CM
+        "m", shape=(2,), doc="Present position minus original position.", shown=MOVED
     )
     velocity: Field[Vector] = state(
         "m/s", shape=(2,), doc="How fast it moves; zero in a constrained direction."

@@ -9,7 +9,7 @@ import numpy as np
 
 from pinjoint.components.bent import MOMENT, deflections, extremes, inner_forces
 from pinjoint.components.derived import chord_rotation, rigid_slopes
-from pinjoint.components.field import CM, ENDS
+from pinjoint.components.field import CM, ENDS, MOVED
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
@@ -66,7 +66,7 @@ def _of_rods(model: Model, length: Array, force: float, moment: float) -> Table:
         for side, key, title in ((1, "largest_moment", tr("M max")), (0, "least_moment", tr("M min"))):
             columns.append(_column(key, title, _KNM, moments[:, side], moment))
             columns.append(_column(f"{key}_at", tr("at x"), CM, places[:, side]))
-        columns.append(_column("deflection", tr("deflection"), CM, bows))
+        columns.append(_column("deflection", tr("deflection"), MOVED, bows))
     else:
         columns.append(_column("axial_force", "N", _KN, rods.axial_force, force))
     if has_strength(model):
@@ -79,7 +79,7 @@ def _of_particles(model: Model, force: float, moment: float) -> Table:
     """Displacements and reactions; where rods bend, rotations and moments of clamps, too."""
     particles, turns = model.particles, rigid_joints(model)
     moved, reaction = particles.displacement, np.where(particles.fixed, particles.reaction, np.nan)
-    columns = _parts("displacement", tr("displacement"), "xy", CM, moved, _largest(moved))
+    columns = _parts("displacement", tr("displacement"), "xy", MOVED, moved, _largest(moved))
     if turns.any():
         rotation = np.where(turns, particles.rotation, np.nan)
         columns.append(_column("rotation", tr("rotation"), _MRAD, rotation))

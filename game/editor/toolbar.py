@@ -156,7 +156,7 @@ def _of_canvas(context: Context) -> Groups:
             *("toggle table", "toggle theory", "toggle energy", "toggle events"),
         ],
         [*of_mods(draw=False)],
-        ["fit", "new grid", "next grid", "toggle legend", "next theme", "next language"],
+        ["fit", "new grid", "next grid", "toggle legend", "next theme", "next language", "next units"],
         [
             "environment",
             "toggle full screen",

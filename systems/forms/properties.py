@@ -206,7 +206,7 @@ def _box(
         text=text,
         opened=text,
         section=subject.section,
-        unit=field.shown[0],
+        unit=field.on_screen[0],
         explanation=field.doc,
         elements=subject.elements,
         accepts=accepts,
@@ -249,7 +249,7 @@ def _written(field: Field[Any], value: Any) -> str:
         return YES_NO[int(value)]
     if field.dtype is str:
         return str(value)
-    return _written_number(float(value), field.shown[1])
+    return _written_number(float(value), field.on_screen[1])
 
 
 def _written_number(value: float, factor: float) -> str:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bears_between, bends, is_warm
+from pinjoint.components.rod import bears_between, bends, is_warm, is_warped
 from pinjoint.systems import is_ours
 from pinjoint.systems.base import MOST_PARTS, REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
 from pinjoint.systems.collision.driven.columns import Order, Real, Whole
@@ -109,7 +109,7 @@ entered = kept(no_cfunc_wrapper=True, _nrt={may_allocate})  # nobody calls them 
 '''
 
 
-_TRAITS = {"warm": is_warm, "bends": bends, "loaded": bears_between}  # of a whole model
+_TRAITS = {"warm": is_warm, "bends": bends, "loaded": bears_between, "warped": is_warped}  # of a whole model
 
 
 def kind_of(model: Model, integrator: Integrator, systems: Sequence[StepSystem]) -> tuple[str, ...]:
@@ -135,7 +135,8 @@ class Writer:
 
     names: what the source refers to, kernels and enumerations. rates: something depends on velocity. powers: some
     account gains by the step. working: laws of rods whose force is no part of the elastic energy. rows: those of rods that
-    one loop of a step goes over: the first, and that after the last.
+    one loop of a step goes over: the first, and that after the last. zeros: what stands for columns that hold nothing else,
+    which would cost a step of a large frame a twelfth.
     """
 
     rows = ALL
@@ -144,7 +145,8 @@ class Writer:
         self.model = model
         self.form = form
         self.integrator = integrator
-        self.warm, self.bends, self.loaded = (has(model) for has in _TRAITS.values())
+        self.warm, self.bends, self.loaded, warped = (has(model) for has in _TRAITS.values())
+        self.zeros = {} if warped else {"rods_initial_slopes": "(0.0, 0.0)"}
         self.coordinates = 3 if self.bends else 2
         self.collides = any(system.impulsive for system in systems)
         self.shift = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
@@ -203,7 +205,7 @@ class Writer:
             if b.role is StepRole.LOAD:
                 names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in ("on", "force", "values", "first")))
             else:
-                known = PROVIDED | {*TRIAL, *(TURNING if self.bends else ())}
+                known = PROVIDED | {*TRIAL, *(TURNING if self.bends else ()), *self.zeros}
                 taken = (p for p in b.parameters if p not in known)
                 names.update(dict.fromkeys(b.stored(p) if p in b.arrays else p for p in taken))
             if b.role is StepRole.EVENT:
@@ -241,6 +243,8 @@ class Writer:
         """How a kernel's parameter is written inside the loop over its rows, or over pairs of particles i and j."""
         if parameter in PROVIDED:
             return OF_PAIR.get(parameter, parameter)
+        if parameter in self.zeros:
+            return self.zeros[parameter]
         if parameter in TURNING and self.bends:
             return f"{TURNING[parameter]}[{index}, 2] * per_arm[0]"
         name, single = TRIAL.get(parameter, parameter), False

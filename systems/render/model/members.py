@@ -154,7 +154,7 @@ def _tips(sheet: Sheet, rows: Rows, along: Points) -> tuple[Rows, Points, Truths
 
 
 def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float, shifted: bool) -> None:
-    text, u = f"{written.given(size, written.DIGITS)} kN/m", sheet.unit
+    text, u = written.stated(size, "kN/m", written.DIGITS), sheet.unit
     way, out = tails[-1] - tails[0], -along
     if shifted:
         out = np.array([way[1], -way[0]]) / max(float(np.hypot(*way)), 1e-9)
@@ -247,7 +247,8 @@ def write_moment(
     sheet: Sheet, at: Points, radius: float, moment: float, colour: Colour, key: tuple[str, int], text: str = ""
 ) -> None:
     """Write the size of a moment outside its arrow; text: in place of the number as a person gave it."""
-    text = text or f"{written.given(abs(moment), written.DIGITS)}{' kN·m' if sheet.view.has_units else ''}"
+    bare = written.given(abs(moment), written.DIGITS)
+    text = text or (written.stated(abs(moment), "kN·m", written.DIGITS) if sheet.view.has_units else bare)
     angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
     out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
     short = text if key[0] == "particles.reaction_moment" else ""
@@ -260,7 +261,8 @@ def write_spring(
     """Write the stiffness of a spring beside its symbol."""
     angle = np.radians([60.0, 120.0, -60.0, -120.0, 90.0, 0.0, 180.0, -90.0])
     out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
-    text = f"k = {written.given(stiffness, written.DIGITS)}{f' {unit}' if sheet.view.has_units else ''}"
+    bare = written.given(stiffness, written.DIGITS)
+    text = f"k = {written.stated(stiffness, unit, written.DIGITS) if sheet.view.has_units else bare}"
     _write_around(sheet, at, radius, out, text, sheet.theme.ink, (key, of), 0.0, text)
 
 

@@ -28,13 +28,11 @@ def half_sizes(sheet: Sheet, texts: Iterable[str], size: int = 0) -> Points:
     return np.array([half_size(text, size, "semibold", sheet.unit) for text in texts]).reshape(-1, 2)
 
 
-def said(sheet: Sheet, value: float, unit: str, nothing: float = SMALLEST) -> str:
-    """A computed value with its unit, "kN" or "kN·m", if any; as short as it is where the view wants none: "1", "0.7071"."""
+def said(sheet: Sheet, value: float, usual: str, nothing: float = SMALLEST, *, bare: bool = False) -> str:
+    """A computed value in a usual unit, with that on screen unless it is bare; as short as it is where a view wants none."""
     if not sheet.view.has_units:
         return written.given(value if abs(value) > nothing else 0.0, written.DIGITS)
-    if not unit:
-        return written.number(value, nothing=nothing)
-    return (written.force if unit == "kN" else written.moment)(value, nothing=nothing)
+    return written.amount(value, usual, nothing=nothing, bare=bare)
 
 
 def reach(way: Points, half: Points) -> Values:
