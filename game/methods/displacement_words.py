@@ -132,8 +132,8 @@ def entry(tables: DisplacementTables, i: int, j: int) -> tuple[str, str, str]:
     total = float(solution.load[i] if of_load else solution.stiffness[i, j])
     terms = tables.terms(i, j)
     rest = total - sum(value for _, value in terms)
-    if of_load and abs(rest) > written.ROUNDING * max([abs(total), *(abs(value) for _, value in terms)]):
-        terms.append((tr("joints"), rest))
+    if abs(rest) > written.ROUNDING * max([abs(total), *(abs(value) for _, value in terms)]):
+        terms.append((tr("joints") if of_load else tr("supports"), rest))
     added = " + ".join(f"{written.number(value, EXACT)} ({name})" for name, value in terms).replace("+ −", "− ")
     unit = tables.unit(i, None if of_load else j)
     name = f"F{index(i + 1)}" if of_load else f"k{index(i + 1, j + 1)}"

@@ -12,6 +12,7 @@ from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
+from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.rod import Rod
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import View
@@ -105,15 +106,15 @@ class DisplacementTables(Tables):
         return [(name, value) for name, value in pairs if abs(value) > least]
 
     def column(self, j: int) -> Table:
-        """Column j of K, or behind the last F, member by member; what acts on the joints themselves is the rest of F."""
+        """Column j of K, or behind the last F, member by member; elastic supports or loads on joints have the rest."""
         total = np.column_stack([self.solution.stiffness, self.solution.load])[:, j]
         of_load, which = j == len(total), [i for i, value in enumerate(total) if value or j == len(total)]
         shares = np.array([self.shares(i, j) for i in which]).reshape(len(which), self.model.rods.count)
         least = max(largest(shares), largest(total))
+        shares = np.column_stack([shares, total[which] - shares.sum(axis=1)])
         rows = np.flatnonzero((np.abs(shares) > written.ROUNDING * least).any(axis=0))
-        names, shares = [self.model.rods.names[row] for row in rows.tolist()], shares[:, rows]
-        if of_load:
-            names, shares = [*names, tr("joints")], np.column_stack([shares, total - shares.sum(axis=1)])
+        every = [*self.model.rods.names, tr("joints") if of_load else tr("supports")]
+        names, shares = [every[row] for row in rows.tolist()], shares[:, rows]
         columns = [
             Column(
                 f"F{index(i + 1)}" if of_load else f"k{index(i + 1, j + 1)}",
@@ -144,7 +145,9 @@ class DisplacementTables(Tables):
     def unbalanced(self) -> float:
         """The largest force (kN, kN·m) that would still hold a joint after superposition, 0 but for rounding."""
         whole, solution = self.solution.superposed, self.solution
-        left = [whole.reaction[one.place] for one in solution.unknowns]
+        springs = spring_stiffness(self.model)
+        pairs = zip(solution.unknowns, solution.displacement, strict=True)
+        left = [whole.reaction[one.place] + springs[one.place] * moved for one, moved in pairs]
         size = max(map(largest, (solution.base.reaction, solution.real.end_moment, solution.real.axial_force)))
         most = largest(np.array(left))
         return most if most > written.ROUNDING * size else 0.0

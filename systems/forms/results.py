@@ -17,7 +17,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import marked, tr, tr_in
 from pinjoint.components.load import CONSTANT, Load, factor_now
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle
+from pinjoint.components.particle import Particle, supported
 from pinjoint.components.rod import Rod, bends_unchecked, rigid_joints, utilisation
 from pinjoint.components.view import Readout
 
@@ -187,10 +187,10 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading
         if turns:
             angle = _MRAD[1] * particles.rotation
             yield _result(tr("rotation"), _number(angle[row], angle, _MRAD[0]), Particle.rotation)
-        held = particles.fixed[row]
-        if held.any():
+        *held, clamped = supported(columns.model)[row].tolist()
+        if any(held):
             yield _vector(tr("reaction"), reactions[row], reactions, "kN", Particle.reaction, held)
-        if turns and particles.fixed_rotation[row]:
+        if turns and clamped:
             moment = columns("particles.reaction_moment")
             yield _result(tr("reaction moment"), _number(moment[row], moment, "kN·m"), Particle.reaction_moment)
         force = columns("particles.applied_force")
@@ -198,7 +198,7 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading
         speed = np.hypot(*particles.velocity.T)
         yield _result(tr("speed"), _number(speed[row], speed, "m/s"), Particle.velocity)
         return
-    if particles.fixed[rows].any():
+    if supported(columns.model)[rows, :2].any():
         total = reactions[rows].sum(axis=0)
         yield _vector(tr("sum of reactions"), total, reactions, "kN", Particle.reaction)
 

@@ -11,7 +11,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.systems.physics.bending import free_coordinates, stiffness_matrix
 from pinjoint.systems.physics.pace import loaded_mode
-from pinjoint.systems.physics.spectrum import RodOperator
+from pinjoint.systems.physics.spectrum import RodOperator, highest_sprung
 
 SMALL = 200  # rods up to which the modes of a model are found in no time, and steps cost next to nothing
 AFFORDABLE = 5000  # rods up to which error control keeps up with a person's eye
@@ -62,7 +62,7 @@ def _of_loaded_mode(model: Model) -> tuple[float, float]:
     mode = loaded_mode(model)
     highest = RodOperator(
         model, model.rods.stiffness / model.rods.rest_length, model.rods.end_stiffness
-    ).gershgorin()
+    ).gershgorin() + highest_sprung(model)
     return _swinging(model) if mode is None else mode[0] ** 2, highest
 
 

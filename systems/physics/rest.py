@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.model import Model
+from pinjoint.components.particle import is_sprung, spring_stiffness
 from pinjoint.systems.islands import Rows
 from pinjoint.systems.physics.bending import bending_energy, bowing_work, levers
 from pinjoint.systems.physics.kernels import LOST_UNSEEN, REST_RESIDUAL, SMALL_SHARE
@@ -90,6 +91,9 @@ class RestMeasure:
         turned = model.particles.constant_moment[particles] * model.particles.rotation[particles]
         measures = np.zeros(len(Measure))
         measures[Measure.ELASTIC] = self.elastic[rods].sum()
+        if is_sprung(model):
+            moved = np.column_stack([model.particles.displacement, model.particles.rotation])
+            measures[Measure.ELASTIC] += 500.0 * (spring_stiffness(model) * moved**2)[particles].sum()
         bowed = turned.sum() + bowing_work(model)[rods].sum()
         measures[Measure.POTENTIAL] = 1000.0 * work.sum() + 1000.0 * bowed
         measures[Measure.RESIDUAL] = self.residual[particles].max(initial=0.0)

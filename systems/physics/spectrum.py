@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.model import Model
+from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.rod import bends
 from pinjoint.systems.physics.bending import slopes
 
@@ -137,12 +138,20 @@ def spectrum(model: Model, axial_force: Array, counts: NDArray[np.bool_] | None 
     """
     rods, particles = model.rods, model.particles
     decay = 0.5 * model.environment.drag
+    sprung = highest_sprung(model)
     if rods.count == 0 or not ((particles.mobility > 0.0).any() or particles.turning.any()):
-        return Spectrum(0.0, decay)
+        return Spectrum(math.sqrt(sprung), decay)
     share = np.ones(rods.count) if counts is None else counts.astype(np.float64)
     tension = share * np.maximum(axial_force, 0.0)
     along, damping = share * rods.stiffness / rods.rest_length, share * rods.damping
     ends, of_ends = share[:, None] * rods.end_stiffness, share[:, None] * rods.end_damping
     if (rods.damping > 0.0).any() or of_ends.any():
         decay += 0.5 * _largest_eigenvalue(RodOperator(model, damping, of_ends))
-    return Spectrum(math.sqrt(_largest_eigenvalue(RodOperator(model, along, ends, tension))), decay)
+    highest = _largest_eigenvalue(RodOperator(model, along, ends, tension)) + sprung
+    return Spectrum(math.sqrt(highest), decay)
+
+
+def highest_sprung(model: Model) -> float:
+    """The highest ω² of particles on springs of supports alone, by which these raise any ω² at most."""
+    mobility = np.column_stack([model.particles.mobility, model.particles.turning])
+    return float((spring_stiffness(model) * mobility).max(initial=0.0))

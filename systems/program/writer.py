@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from pinjoint.components.model import Model
+from pinjoint.components.particle import is_sprung
 from pinjoint.components.rod import bears_between, bends, is_warm, is_warped
 from pinjoint.systems import is_ours
 from pinjoint.systems.base import MOST_PARTS, REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
@@ -109,7 +110,13 @@ entered = kept(no_cfunc_wrapper=True, _nrt={may_allocate})  # nobody calls them 
 '''
 
 
-_TRAITS = {"warm": is_warm, "bends": bends, "loaded": bears_between, "warped": is_warped}  # of a whole model
+_TRAITS = {  # of a whole model
+    "warm": is_warm,
+    "bends": bends,
+    "loaded": bears_between,
+    "warped": is_warped,
+    "sprung": is_sprung,
+}
 
 
 def kind_of(model: Model, integrator: Integrator, systems: Sequence[StepSystem]) -> tuple[str, ...]:
@@ -145,7 +152,7 @@ class Writer:
         self.model = model
         self.form = form
         self.integrator = integrator
-        self.warm, self.bends, self.loaded, warped = (has(model) for has in _TRAITS.values())
+        self.warm, self.bends, self.loaded, warped, self.sprung = (has(model) for has in _TRAITS.values())
         self.zeros = {} if warped else {"rods_initial_slopes": "(0.0, 0.0)"}
         self.coordinates = 3 if self.bends else 2
         self.collides = any(system.impulsive for system in systems)
@@ -187,6 +194,7 @@ class Writer:
         # All arrays that the functions read or write besides the integrator's own.
         self.columns = [*ALWAYS, *(["rods_misfit"] if self.warm else []), *(OF_BENDING if self.bends else ())]
         self.columns += ["rods_distributed_force", "rods_load_shares"] if self.loaded else []
+        self.columns += ["particles_support_springs"] if self.sprung else []
         self._add_columns([*self.bound, *self.potentials.values()])
         if self.pairs:
             self.columns = list(dict.fromkeys([*self.columns, "particles_position", *ARRAYS]))
@@ -225,6 +233,7 @@ class Writer:
             "LOADS": bool(self.of[StepRole.LOAD]),
             "MEETS": self.collides,
             "POWERS": self.powers,
+            "SPRUNG": self.sprung,
             "WARM": self.warm,
             "mass": "particles_masses[i, d]" if self.bends else "particles_mass[i]",
         }
@@ -398,7 +407,8 @@ class Writer:
 
     def _particle_forces(self, powers: bool = False, span: str = EVERY) -> list[str]:
         """Forces on the particles from outside, and of the laws that resist their motion."""
-        body = self._each_coordinate("force[i, {0}] = particles_constant_force[i, {0}]")
+        held = " - particles_support_springs[i, {0}] * displacement[i, {0}]" * self.sprung
+        body = self._each_coordinate(f"force[i, {{0}}] = particles_constant_force[i, {{0}}]{held}")
         for b in self.of[StepRole.PARTICLE_FORCE]:
             body += [f"fx, fy = {self._apply(b, 'i')}", "force[i, 0] += fx", "force[i, 1] += fy"]
             body += [_particle_power(b)] if powers else []

@@ -3,7 +3,8 @@ theory about original positions.
 
 The kinematically determinate structure has all its unknowns Δ held. Under the load its holds need forces R₀, those at the
 ends of the members that a table of fixed-end forces has; a unit of one unknown alone takes forces k at all of them. Without
-holds these are none: K Δ = F, with F = −R₀. K is the sum of what the members add, as statics assembles it.
+holds these are none: K Δ = F, with F = −R₀. K is the sum of what the members add, as statics assembles it,
+and of springs of supports.
 
 Ends of members that are hinged need no unknown of their own: what holds them is 0 however they turn, and k is without them.
 """
@@ -74,7 +75,7 @@ def solve(model: Model) -> Solution:
     released, real = real_structure(model)
     held = replace(whole, fixed=whole.fixed | whole.unknown, unknown=np.zeros_like(whole.unknown))
     moved = whole.field(model.particles.displacement, model.particles.rotation)
-    supports, nothing = np.where(whole.fixed, moved, 0.0), np.zeros(moved.shape)
+    supports, nothing = whole.of_supports(moved), np.zeros(moved.shape)
     base = _state(model, held, External.of(model).at(1.0), supports, 1.0)
     number = np.full(moved.size, -1, dtype=np.intp)
     number[whole.index] = np.arange(count)

@@ -63,7 +63,7 @@ class SetState:
     ) -> SetState:
         """That of a structure under a load (n, …), displaced so, with moments (rods, 2) on the ends of rods besides."""
         reaction = np.zeros((len(moved), 3))
-        reaction[:, : rods.width] = np.where(rods.fixed, rods.internal(response) - load, 0.0)
+        reaction[:, : rods.width] = rods.reactions(response, load)
         end_moment = rods.end_moments(response) + moment
         state = cls(moved[:, :2], rods.rotation(moved), response.axial_force, end_moment, reaction)
         return state.without_rounding(model.rods.rest_length)

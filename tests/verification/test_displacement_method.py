@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from pinjoint import Session
 from pinjoint.components.model import Model
+from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.documents import models
 from pinjoint.documents.models import parse
@@ -35,10 +36,11 @@ def checked(made: Model, within: float = 1e-10) -> Solution:
     if len(whole.end_moment) and theory.diagrams:
         assert np.abs(whole.bending_moment - theory.diagrams["bending_moment"]).max() <= within * size
     at = tuple(np.array([unknown.place for unknown in found.unknowns]).T)
-    columns = np.array([unit.reaction[at] for unit in found.units]).T
+    springs = np.diag(spring_stiffness(made)[at])  # hold joints, too
+    columns = np.array([unit.reaction[at] for unit in found.units]).T + springs
     assert np.abs(columns - found.stiffness).max() <= 1e-12 * np.abs(found.stiffness).max()
     shares = [[found.shares(i, j).sum() for j in range(count)] for i in range(count)]
-    assert np.abs(shares - found.stiffness).max() <= 1e-12 * np.abs(found.stiffness).max()
+    assert np.abs(shares + springs - found.stiffness).max() <= 1e-12 * np.abs(found.stiffness).max()
     assert np.abs(found.stiffness @ found.displacement - found.load).max() <= 1e-9 * np.abs(found.load).max()
     return found
 

@@ -14,7 +14,6 @@ from pinjoint.systems.render.labels.placing import ANCHORS
 from pinjoint.systems.render.marks import (
     Discs,
     Fills,
-    Owner,
     Owners,
     Points,
     Rows,
@@ -25,7 +24,16 @@ from pinjoint.systems.render.marks import (
 )
 from pinjoint.systems.render.model.arrows import MOST, draw_arrows, full_load, head_length
 from pinjoint.systems.render.model.sheet import Sheet
-from pinjoint.systems.render.model.values import FIRST, SMALLEST, half_sizes, off, said, write
+from pinjoint.systems.render.model.values import (
+    FIRST,
+    SMALLEST,
+    half_sizes,
+    off,
+    said,
+    write,
+    write_around,
+    write_spring,
+)
 from pinjoint.systems.render.symbols import RIM
 from pinjoint.systems.render.theme import Colour
 
@@ -252,33 +260,4 @@ def write_moment(
     angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
     out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
     short = text if key[0] == "particles.reaction_moment" else ""
-    _write_around(sheet, at, radius, out, text, colour, (key, ("particles", key[1])), abs(moment), short)
-
-
-def write_spring(
-    sheet: Sheet, at: Points, radius: float, stiffness: float, unit: str, key: tuple[str, int], of: Owner
-) -> None:
-    """Write the stiffness of a spring beside its symbol."""
-    angle = np.radians([60.0, 120.0, -60.0, -120.0, 90.0, 0.0, 180.0, -90.0])
-    out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
-    bare = written.given(stiffness, written.DIGITS)
-    text = f"k = {written.stated(stiffness, unit, written.DIGITS) if sheet.view.has_units else bare}"
-    _write_around(sheet, at, radius, out, text, sheet.theme.ink, (key, of), 0.0, text)
-
-
-def _write_around(
-    sheet: Sheet,
-    at: Points,
-    radius: float,
-    out: Points,
-    text: str,
-    colour: Colour,
-    whose: tuple[tuple[str, int], Owner],
-    worth: float,
-    short: str,
-) -> None:
-    """Write a value outside a circle, at one of some directions (k, 2) from it. whose: its key and what it belongs to."""
-    near = off(at, out, radius + 2.0 * sheet.unit, half_sizes(sheet, [text]))
-    places, rank = np.concatenate([near, near + 8.0 * sheet.unit * out]), FIRST - worth
-    (key, of), leads = whose, (at + radius * out[:5], out[0])
-    write(sheet, text, places, colour, key, of, rank=rank, own=key, leads=leads, short=short)
+    write_around(sheet, at, radius, out, text, colour, (key, ("particles", key[1]), key), abs(moment), short)
