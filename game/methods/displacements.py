@@ -12,7 +12,7 @@ from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
-from pinjoint.components.particle import spring_stiffness
+from pinjoint.components.particle import in_support_axes, spring_stiffness, turned, turned_supports
 from pinjoint.components.rod import Rod
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import View
@@ -65,7 +65,7 @@ class DisplacementTables(Tables):
         return Table(tr("rod"), rods.names, columns)
 
     def member(self, row: int) -> Table:
-        """k of a rod over the directions of both its ends in the axes of the plane."""
+        """k of a rod over the directions of both its ends, along the axes of supports there."""
         matrix, width = self.solution.members[row], self.solution.members.shape[1] // 2
         felt = np.flatnonzero(matrix.any(axis=0)).tolist()
         ends = self.model.rods.between[row].tolist()
@@ -89,6 +89,9 @@ class DisplacementTables(Tables):
             forces[:, end, :2] = pull[:, None] * axis + shear[:, None] * left
         if forces.shape[2] > 2:
             forces[:, :, 2] = solution.base.end_moment
+        angle = np.where(turned_supports(self.model), self.model.particles.support_angle, 0.0)
+        for end in (0, 1):
+            forces[:, end] = turned(forces[:, end], angle[rods.between[:, end]])
         return forces.reshape(rods.count, -1)
 
     def shares(self, i: int, j: int) -> Array:
@@ -147,7 +150,8 @@ class DisplacementTables(Tables):
         whole, solution = self.solution.superposed, self.solution
         springs = spring_stiffness(self.model)
         pairs = zip(solution.unknowns, solution.displacement, strict=True)
-        left = [whole.reaction[one.place] + springs[one.place] * moved for one, moved in pairs]
+        reaction = in_support_axes(self.model, whole.reaction)
+        left = [reaction[one.place] + springs[one.place] * moved for one, moved in pairs]
         size = max(map(largest, (solution.base.reaction, solution.real.end_moment, solution.real.axial_force)))
         most = largest(np.array(left))
         return most if most > written.ROUNDING * size else 0.0

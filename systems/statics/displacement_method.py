@@ -33,8 +33,8 @@ class Solution(Superposition):
     """K Δ = F of n unknowns, in m, rad, kN, kN·m; they are free directions of particles.
 
     stiffness: K (n, n). load: F (n,). displacement: Δ (n,). members: k of every rod over the coordinates of both its ends,
-    in the axes of the plane, (rods, 2 × width, 2 × width). places: the number of the unknown that each of these is, −1 where
-    it is held, (rods, 2 × width).
+    along the axes of supports, (rods, 2 × width, 2 × width). places: the number of the unknown that each of these is, −1
+    where it is held, (rods, 2 × width).
     """
 
     stiffness: Array
@@ -88,7 +88,7 @@ def solve(model: Model) -> Solution:
         stiffness=np.asarray(whole.initial_tangent),
         load=load,
         displacement=whole.gather(released.theory.deflection(whole.spread(load))),
-        members=whole.stiffnesses.reshape(-1, 2 * width, 2 * width),
+        members=whole.stiffnesses,
         places=number.reshape(-1, width)[whole.ends].reshape(-1, 2 * width),
     )
 
