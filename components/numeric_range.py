@@ -14,7 +14,7 @@ from pinjoint.components.wording import cut
 
 UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
 
-_TABLES = ("particles", "rods", "loads", "environment", "settings")
+_TABLES = ("particles", "rods", "loads", "span_loads", "environment", "settings")
 # What is checked besides what a person made: state that a person can type; and what follows, from positions that may be
 # too near or too far, as E·A and E·I, and from bending stiffnesses.
 _OTHERS = (

@@ -18,7 +18,7 @@ from pinjoint.components.language import marked, tr, tr_in
 from pinjoint.components.load import CONSTANT, Load, factor_now
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, bends_unchecked, rigid_joints, utilisation
+from pinjoint.components.rod import Rod, bearing, bends_unchecked, rigid_joints, utilisation
 from pinjoint.components.view import Readout
 
 SECTION = marked("Results")
@@ -137,7 +137,7 @@ def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Reading]:
     """Forces, moment and rotation at both ends of a rod that bends, or bears a force along it."""
     rods = columns.model.rods
     bends = rods.bending_stiffness[row] > 0.0
-    if not (bends or rods.distributed_force[row].any()):
+    if not (bends or bearing(columns.model)[row]):
         return
     ends = [particle.said for particle in columns.model.rods[int(row)].ends]
     ends = (

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bears_between, bends, is_warm
+from pinjoint.components.rod import bears_between, bends, is_warm, turned_between
 from pinjoint.systems import is_ours
 from pinjoint.systems.base import MOST_PARTS, REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
 from pinjoint.systems.collision.driven.columns import Order, Real, Whole
@@ -109,7 +109,8 @@ entered = kept(no_cfunc_wrapper=True, _nrt={may_allocate})  # nobody calls them 
 '''
 
 
-_TRAITS = {"warm": is_warm, "bends": bends, "loaded": bears_between}  # of a whole model
+# Of a whole model.
+_TRAITS = {"warm": is_warm, "bends": bends, "loaded": bears_between, "turned": turned_between}
 
 
 def kind_of(model: Model, integrator: Integrator, systems: Sequence[StepSystem]) -> tuple[str, ...]:
@@ -144,7 +145,7 @@ class Writer:
         self.model = model
         self.form = form
         self.integrator = integrator
-        self.warm, self.bends, self.loaded = (has(model) for has in _TRAITS.values())
+        self.warm, self.bends, self.loaded, self.turned = (has(model) for has in _TRAITS.values())
         self.coordinates = 3 if self.bends else 2
         self.collides = any(system.impulsive for system in systems)
         self.shift = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
@@ -184,7 +185,7 @@ class Writer:
         self.powers = self.rates or pushing or bool(self.working) or bool(self.working_ends)
         # All arrays that the functions read or write besides the integrator's own.
         self.columns = [*ALWAYS, *(["rods_misfit"] if self.warm else []), *(OF_BENDING if self.bends else ())]
-        self.columns += ["rods_distributed_force", "rods_load_shares"] if self.loaded else []
+        self.columns += ["rods_span_load"] if self.loaded else []
         self._add_columns([*self.bound, *self.potentials.values()])
         if self.pairs:
             self.columns = list(dict.fromkeys([*self.columns, "particles_position", *ARRAYS]))
@@ -223,6 +224,7 @@ class Writer:
             "LOADS": bool(self.of[StepRole.LOAD]),
             "MEETS": self.collides,
             "POWERS": self.powers,
+            "TURNED": self.turned,
             "WARM": self.warm,
             "mass": "particles_masses[i, d]" if self.bends else "particles_mass[i]",
         }

@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pinjoint.components.derived import by_hinges, cubic
+from pinjoint.components.derived import by_hinges, by_rigid_ends, cubic
 from pinjoint.components.model import Model
+from pinjoint.components.spans import Kinks
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import Bending
 from pinjoint.systems.statics.buckling import members
@@ -59,11 +60,12 @@ class Divided:
         hinged = rods.hinged[row] & np.stack([first, last], axis=1)
         rigid = ~hinged & (rods.bending_stiffness > 0.0)[row, None]
         per_slope, of_ends = by_hinges(rigid, length)
+        between = Kinks.of(model).divided(row, number / parts[row], (number + 1) / parts[row])
         bending = Bending(
             rest_length=length,
             end_stiffness=(rods.bending_stiffness[row] / length)[:, None] * per_slope,
             initial_slopes=rods.initial_slopes[row] / parts[row, None],
-            distributed_force=rods.distributed_force[row],
+            span_load=by_rigid_ends(between.on_clamped(length), rigid),
             **of_ends,
         )
         between = particles.position[whole.ends[inner[0], 0]] + inner[1][:, None] * rods.difference[inner[0]]

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.bent import distributed_shares
+from pinjoint.components.bent import borne_between
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import nodes
@@ -211,7 +211,7 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     particles = sheet.model.particles
     largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
     taken = np.full((len(sheet.centres), 2), NO_SUPPORT)  # by reactions: a side of each particle, by axis
-    applied = particles.applied_force - distributed_shares(sheet.model)  # rows of arrows show the others
+    applied = particles.applied_force - borne_between(sheet.model)  # rows of arrows show the others
     for name, force in (("reaction", particles.reaction[shown]), ("load", applied[shown])):
         index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST))
         if len(index):
