@@ -188,7 +188,8 @@ class Card:
     title: of the lesson. progress: which task of how many, and done: those that were done. paragraphs: the task.
     choices: (text, chosen) of possible answers, with the action of each in `answers`. entry: what was typed, with its unit;
     None: nothing is to be typed. said: what is said of the last check, or a hint, and its `mood`: "right", "wrong", "hint".
-    buttons: the first is the next thing to do. first: by how many lines it is scrolled on, or back if negative.
+    buttons: the first that is enabled is the next thing to do. first: by how many lines it is scrolled on, or back if
+    negative.
     """
 
     title: str

@@ -65,6 +65,12 @@ class Target:
         """The path to the same fact of another element."""
         return ".".join(part for part in (self.table.name, element, self.key, self.axis) if part)
 
+    @property
+    def shown(self) -> tuple[str, float]:
+        """The unit in which the fact is shown, and the factor to it from its own."""
+        unit, factor = self.field.shown
+        return self.field.unit_of(self.axis) if unit == self.field.unit else unit, factor
+
     def part(self, value: Any) -> Any:
         """The component of a value that the path names; the whole value if the path has no axis."""
         return value[self.field.axes.index(self.axis)] if self.axis else value
@@ -293,8 +299,7 @@ def quantity(model: Model, path: str) -> Quantity:
         parts = _parts(target.key, target.field)
         raise PathError("{path}: write one of {parts}.", path=path, parts=parts)
     handle, field = target.handles[0], target.field
-    unit, factor = field.shown
-    unit = field.unit_of(target.axis) if unit == field.unit else unit
+    unit, factor = target.shown
     told = {"quantity": tr(field.title), "axis": target.axis, "element": handle.world.describe(handle)}
     title = marked("{quantity} {axis} of {element}") if target.axis else marked("{quantity} of {element}")
 

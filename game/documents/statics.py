@@ -120,6 +120,8 @@ class Statics:
             return marked("not solved yet")
         if settlement is None:
             return marked("no solution")
+        if self.first_order and not self._model.rods.count:
+            return marked("no rods yet")
         return SAID[self._model.settings.theory] if settlement.status == "equilibrium" else settlement.status
 
     @property
@@ -228,7 +230,7 @@ class Statics:
         settlement = self.settlement
         if self.is_late or settlement is None or not settlement.final.balanced:
             return ""
-        if self._model.rods.count > _MOST_COMPARED:
+        if not 0 < self._model.rods.count <= _MOST_COMPARED:
             return ""
         if elapsed is not None:
             self._rest = self.revision, self._rest[1] + elapsed if self._rest[0] == self.revision else 0.0

@@ -25,16 +25,12 @@ def _course(session: Session) -> Course:
     return course
 
 
-@action("check answer", "f5", "check the task of the lesson, or go on", while_drawing=True)
-def _check(session: Session, pixel: Vector) -> None:
-    course = _course(session)
-    if course.accepted:
-        session.act("next task", pixel)
-    else:
-        course.check()
+action("check answer", "f5", "check the task of the lesson", while_drawing=True)(
+    lambda session, pixel: _course(session).check()
+)
 
 
-@action("next task")
+@action("next task", "f10", "go on to the next task", while_drawing=True)
 def _next(session: Session, pixel: Vector) -> None:
     """Go on: to the next task, the next lesson, or, after the last, to the start page."""
     course = _course(session)
@@ -70,6 +66,7 @@ def _show(session: Session, pixel: Vector) -> None:
 
 
 action("task again", "f8", "begin the task again")(lambda session, pixel: _course(session).again())
+action("task of dot")(lambda session, pixel: _course(session).begin(session.view.pressed.item))
 
 
 @action("leave lesson", "f9", "leave the lesson")

@@ -68,8 +68,8 @@ class Course:
 
     @property
     def takes_return(self) -> bool:
-        """True while Return checks a number that was typed, or goes on from one that was right."""
-        return bool(self.typed) and (not self.accepted or not self._session.selected)
+        """True while Return checks what was typed or chosen."""
+        return bool(self.typed or self.choice) and not self.accepted
 
     @property
     def awaits_choice(self) -> bool:
@@ -81,9 +81,11 @@ class Course:
 
         Raises ScriptError if its model or its lines cannot be used.
         """
+        resumes = False
         if at is None:
             done = progress.done(self.lesson.name).tasks
             at = next((n for n in range(len(self.lesson.tasks)) if n + 1 not in done), 0)
+            resumes = at > 0
         first = at
         while first > 0 and self.lesson.tasks[first].model is None:
             first -= 1
@@ -92,6 +94,9 @@ class Course:
             self._shown = True
             self.perform(self.task.solution)
         self._enter(at)
+        if resumes:
+            self.mood = HINT
+            self.said = tr("You go on where you stopped; the dots above lead back to any task.")
 
     def _enter(self, at: int) -> None:
         """Show a task and what it begins with; the model of the one before stays if it has none."""
@@ -174,10 +179,9 @@ class Course:
         self.check()
 
     def choose(self, number: int) -> None:
-        """Choose an answer by its number, from 0, and have it checked."""
+        """Choose an answer by its number, from 0."""
         if self.task.kind == CHOICES and not self.accepted and number < len(self.task.choices):
-            self.choice = self.task.choices[number].text
-            self.check()
+            self.choice, self.said, self.mood = self.task.choices[number].text, "", ""
 
     def type(self, text: str) -> None:
         """Type a part of a number."""
@@ -231,7 +235,10 @@ class Course:
             self.mood, self.said, self._scored, self.first = WRONG, found.said, "", 0
 
     def _accept(self, found: Verdict) -> None:
+        again = self.accepted  # a state that is reached anew
         self.accepted, self.mood, self.said, self.first = True, RIGHT, found.said, 0
+        if not again:
+            self.perform(self.task.then)
         if self._shown:
             return
         number, name = self.at + 1, self.lesson.name
@@ -314,7 +321,7 @@ class Course:
             )
             said += (how,)
         elif self.accepted and last:
-            said += (tr("This lesson is done."),)
+            said += (tr("This lesson is done: “Next” goes on to another one."),)
         return Card(
             title=tr(self.lesson.title),
             progress=tr("Task {number} of {count}", number=self.at + 1, count=count),
@@ -326,7 +333,7 @@ class Course:
             entry=self._entry(),
             said=said,
             mood=self.mood,
-            buttons=self._buttons(last=last),
+            buttons=self._buttons(),
             first=self.first,
         )
 
@@ -338,11 +345,10 @@ class Course:
             return None
         return f"{decimals(self.typed)}{'' if self.accepted else '|'} {self._unit}".rstrip()
 
-    def _buttons(self, *, last: bool) -> tuple[Tool, ...]:
-        onward = tr("Next lesson") if last else tr("Next")
-        main = ("next task", onward) if self.accepted else ("check answer", tr("Check"))
+    def _buttons(self) -> tuple[Tool, ...]:
         return (
-            Tool(*main, "F5"),
+            Tool("check answer", tr("Check"), "F5", enabled=not self.accepted),
+            Tool("next task", tr("Next"), "F10", enabled=self.accepted),
             Tool("hint", tr("Hint"), "F6", enabled=bool(self.task.hints) and not self.accepted),
             Tool("show solution", tr("Show me"), "F7", enabled=not self.accepted),
             Tool("task again", tr("Again"), "F8"),

@@ -156,14 +156,17 @@ def _wrong_number(truth: Session, task: Task, answer: float) -> str:
         return tr("The size is right, but not the sign.")
     if answer * wanted < 0.0:
         return tr("Neither the sign nor the size is right yet.")
-    is_large, is_negative = abs(answer) > abs(wanted), wanted < 0.0 and answer < 0.0
-    if is_negative and is_large:
-        return tr("The sign is right, but the size of {answer} is too large.", answer=given)
-    if is_negative:
-        return tr("The sign is right, but the size of {answer} is too small.", answer=given)
-    return (
-        tr("{answer} is too large.", answer=given) if is_large else tr("{answer} is too small.", answer=given)
-    )
+    said = tr(_SIZES[wanted < 0.0 and answer < 0.0, abs(answer) > abs(wanted)], answer=given)
+    unit, _, name = said_of(truth, task.asked[0])
+    return joined([said, tr("Asked: {what}.", what=f"{name} ({unit})" if unit else name)])
+
+
+_SIZES = {  # by whether the answer is rightly negative, and larger in size than the truth
+    (True, True): marked("The sign is right, but the size of {answer} is too large."),
+    (True, False): marked("The sign is right, but the size of {answer} is too small."),
+    (False, True): marked("{answer} is too large."),
+    (False, False): marked("{answer} is too small."),
+}
 
 
 def _wrong_choice(truth: Session, task: Task, answer: str) -> str:
@@ -185,17 +188,15 @@ def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, s
         values = each(truth, path)
         sizes = [abs(value) if word == "largest" else value for _, value in values]
         best = OVER_ALL[word](sizes) if sizes else math.nan
-        right = [
-            handle
-            for (handle, _), size in zip(values, sizes, strict=True)
-            if abs(size - best) <= NEARLY * abs(best)
-        ]
+        having = zip(values, sizes, strict=True)
+        right = [handle for (handle, _), size in having if abs(size - best) <= NEARLY * abs(best)]
+        right = list(dict.fromkeys(right))  # of one with the same at both ends
     else:
         path, relation = parts_of(asked)[0], asked[len(parts_of(asked)[0]) :]
         values = each(truth, path)
         right = [handle for handle, _ in values if holds(truth, path.replace("*", named(handle), 1) + relation)]
     target, _ = locate(truth.model, path.strip(), readable)
-    unit, factor = target.field.shown
+    unit, factor = target.shown
     title = tr(target.field.title)
     title = f"{title} {target.axis}" if target.axis else title
     written_values = {
@@ -239,7 +240,7 @@ def said_of(session: Session, path: str) -> tuple[str, float, str]:
     try:
         if word in OVER_ALL and of_all:
             target, _ = locate(session.model, of_all.strip(), readable)
-            unit, factor = target.field.shown
+            unit, factor = target.shown
             axis = f" {target.axis}" if target.axis else ""
             return unit, factor, tr(_OVER_ALL[word], what=f"{tr(target.field.title)}{axis}")
         found = quantity(session.model, path)

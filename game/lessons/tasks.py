@@ -42,7 +42,8 @@ class Task:
 
     line: its number in the file. model: what it begins with; None: how the task before ended. setup: lines that are
     performed then. kind: one of KINDS, and `asked`, its conditions or the path. after: lines performed in a copy before it
-    is judged. within: of a number, the share by which an answer may differ. score: a path to make as small as possible.
+    is judged. then: lines performed when it is done. within: of a number, the share by which an answer may differ.
+    score: a path to make as small as possible.
     """
 
     line: int
@@ -53,6 +54,7 @@ class Task:
     asked: tuple[str, ...]
     choices: tuple[Choice, ...]
     after: tuple[Line, ...]
+    then: tuple[Line, ...]
     within: float
     hints: tuple[str, ...]
     right: str
@@ -79,6 +81,7 @@ _KEYS: _Shapes = {
     NUMBER: (str, "rods.CD.axial_force"),
     CHOICES: (_OBJECTS, [{"text": "Tension", "if": "rods.CD.axial_force > 0"}]),
     "after": (_OBJECTS, _LINES),
+    "then": (_OBJECTS, [{"press": "space"}]),
     "within": (float, 0.01),
     "hints": (list[str], ["Look at joint C."]),
     "right": (str, "Joint C has no load, so CD carries nothing."),
@@ -148,6 +151,7 @@ class Lesson:
             asked=() if kinds[0] == CHOICES else _listed(entry[kinds[0]]),
             choices=tuple(self._choice(line, choice) for choice in entry.get(CHOICES, ())),
             after=tuple((line, said) for said in entry.get("after", ())),
+            then=tuple((line, said) for said in entry.get("then", ())),
             within=float(entry.get("within", 0.01)),
             hints=tuple(entry.get("hints", ())),
             right=entry["right"],

@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
+from pinjoint.components.field import ENDS
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import english, listed, marked
 from pinjoint.components.mistake import NotFound, WrongValue
@@ -119,6 +120,8 @@ def each(session: Any, path: str) -> list[tuple[Handle, float]]:
     if rest:
         raise PathError("{path}: leave out '{rest}', which follows the path.", path=cut(path), rest=cut(rest))
     values = [(handle, target.part(getattr(handle, target.field.name))) for handle in target.handles]
+    if target.field.axes == ENDS and not target.axis:
+        values = [(handle, value) for handle, both in values for value in both]
     wrong = next((value for _, value in values if not isinstance(value, int | float | None)), None)
     if wrong is not None:
         if not target.field.shape:

@@ -19,28 +19,46 @@ from pinjoint.components.load import HISTORIES, Load
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
-from pinjoint.components.settings import Settings
+from pinjoint.components.settings import Environment, Settings
 from pinjoint.systems.forms.typing import YES_NO, Typing
 
 MIXED = marked("mixed")
 KIND = "kind"  # the part of a history that is its kind
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
-# Settings that concern rods; the others particles.
-_OF_RODS = ("diagram_scale", "original_diagrams", "diagrams", "theory", "opens_in", "plasticity", "sleeping")
 _DECIDED = (Particle.asleep, Rod.yielded_at)  # by the run
-# Fields of one kind with a heading of their own, in the order in which these follow.
-_APART: Mapping[str, tuple[Field[Any], ...]] = {
-    marked("Cross-section"): (Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment),
-    marked("Bending"): (
-        *(Rod.prescribed_bending_stiffness, Rod.hinged, Rod.distributed_force),
-        *(Rod.temperature_gradient, Rod.bending_damping),
+# The groups of boxes by heading, in the order in which they follow one another, with the Fields of all kinds in each, those
+# that matter first. What is in none, such as a Field of a mod, stands in the first, under the name of its element.
+GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
+    "": (
+        *(Particle.name, Particle.position, Rod.name, Rod.prescribed_rest_length, Load.name, Load.force),
+        *(Load.moment, Load.history, Environment.acceleration, Environment.force, Environment.drag),
+        *(Settings.collisions, Settings.restitution, Settings.prescribed_displacement_scale),
+        *(Settings.integrator, Settings.time_step, Settings.tolerance),
     ),
-    marked("Rotation"): (
-        *(Particle.rotation, Particle.angular_velocity, Particle.fixed_rotation),
-        *(Particle.moment, Particle.prescribed_inertia),
+    marked("Section and material"): (
+        *(Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment),
+        *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.density, Rod.thermal_expansion),
+        *(Rod.tensile_strength, Rod.compressive_strength, Rod.tension_only),
+    ),
+    marked("Supports and joints"): (Particle.fixed, Particle.fixed_rotation, Rod.hinged),
+    marked("Loads"): (
+        *(Particle.force, Particle.moment, Particle.acceleration),
+        *(Rod.distributed_force, Rod.temperature_change, Rod.temperature_gradient),
+    ),
+    marked("Motion and contact"): (
+        *(Particle.displacement, Particle.rotation, Particle.velocity, Particle.angular_velocity),
+        *(Particle.prescribed_mass, Particle.prescribed_inertia, Particle.radius),
+        *(Rod.damping, Rod.bending_damping, Rod.plastic_strain),
+    ),
+    marked("All rods"): (
+        *(Settings.theory, Settings.opens_in, Settings.original_diagrams, Settings.diagrams),
+        *(Settings.diagram_scale, Settings.plasticity, Settings.sleeping),
     ),
 }
-_OF_BENT_RODS = (Rod.hinged, Rod.temperature_gradient, Rod.bending_damping)  # that mean nothing to others
+_OF_BENDING = (  # what means nothing to rods that do not bend, and where none turns a particle
+    *(Rod.hinged, Rod.temperature_gradient, Rod.bending_damping, Load.moment, Particle.moment),
+    *(Particle.rotation, Particle.angular_velocity, Particle.fixed_rotation, Particle.prescribed_inertia),
+)
 _NUMBERS = (float, int)
 _EDITABLE = (*_NUMBERS, bool, str)
 
@@ -84,34 +102,40 @@ def _subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
     """
     kinds = dict.fromkeys(map(type, selected))
     groups: list[list[Handle]] = [[h for h in selected if type(h) is kind] for kind in kinds]
-    found = [_subject(model, heading(model, group), group) for group in groups]
+    named = [(heading(model, group), group) for group in groups]
     if not selected:
-        found = [_subject(model, heading(model, []), [model.environment])]
-        found += [_subject(model, model.describe(grid), [grid]) for grid in model.grids if grid.shown]
-    found += [part for subject in found for part in _parts(model, subject)]
+        named = [(heading(model, []), [model.environment])]
+        named += [(model.describe(grid), [grid]) for grid in model.grids if grid.shown]
     if len(selected) == 1 and isinstance(selected[0], Particle):
-        loads = [load for load in model.loads if load.on == selected[0].row]
-        found += [_subject(model, model.describe(load), [load]) for load in loads]
-    for section, kind, of_rods in ((tr("All particles"), Particle, False), (tr("All rods"), Rod, True)):
-        if not selected or kind in kinds:
-            fields = model.tables[Settings.table].fields_in(*SAVED)
-            chosen = tuple(f for f in fields if (f.name in _OF_RODS) is of_rods and f.dtype is not object)
-            found.append(Subject(section, (model.settings,), np.zeros(1, dtype=np.intp), chosen))
-    return found
+        named += [(model.describe(load), [load]) for load in model.loads if load.on == selected[0].row]
+    found = [subject for section, group in named for subject in _groups(model, section, group)]
+    of = {tr("All particles"): Particle, tr("All rods"): Rod}
+    settings = _groups(model, tr("All particles"), [model.settings])
+    return found + [subject for subject in settings if not selected or of[subject.section] in kinds]
 
 
-def _parts(model: Model, subject: Subject) -> Iterator[Subject]:
-    """The Fields of elements that have a heading of their own, as far as they mean something to these."""
-    kind, turns = type(subject.elements[0]), _turn(model, subject)
-    for heading, fields in _APART.items():
-        chosen = tuple(f for f in fields if vars(kind).get(f.name) is f and (turns or f not in _OF_BENT_RODS))
-        if chosen and (turns or kind is Rod):
-            yield replace(subject, section=tr(heading), fields=chosen)
+def _groups(model: Model, section: str, elements: Sequence[Handle]) -> Iterator[Subject]:
+    """The groups of Fields of elements of one kind; section: the heading of the first."""
+    rows = model.row_of_entity[[element.entity for element in elements]].astype(np.intp)
+    turn = _turn(model, type(elements[0]), rows)
+    fields = model.tables[elements[0].table].fields_in(*SAVED)
+    wanted = [
+        field
+        for field in fields
+        if (field.dtype in _EDITABLE or field is Load.history)
+        and (turn or field not in _OF_BENDING)
+        and (len(elements) == 1 or field.name != "name")
+        and field not in _DECIDED
+    ]
+    rest = [field for field in wanted if not any(field in group for group in GROUPS.values())]
+    for title, group in GROUPS.items():
+        chosen = [field for field in group if field in wanted] + ([] if title else rest)
+        if chosen:
+            yield Subject(tr(title) or section, tuple(elements), rows, tuple(chosen))
 
 
-def _turn(model: Model, subject: Subject) -> bool:
+def _turn(model: Model, kind: type[Handle], rows: NDArray[np.intp]) -> bool:
     """True if some of these rods bend, some of these particles turn, or are held or moved as if they did."""
-    kind, rows = type(subject.elements[0]), subject.rows
     if kind is Rod:
         return bool((model.rods.bending_stiffness[rows] > 0.0).any())
     if kind is Load:
@@ -121,31 +145,13 @@ def _turn(model: Model, subject: Subject) -> bool:
     return kind is Particle and bool((rigid_joints(model) | given)[rows].any())
 
 
-def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
-    kind = type(elements[0])
-    fields = model.tables[kind.table].fields_in(*SAVED)
-    wanted = [field for field in fields if field.dtype in _EDITABLE or field is Load.history]
-    apart = [field for fields in _APART.values() for field in fields]
-    wanted = [field for field in wanted if field not in (*_DECIDED, *apart)]
-    if len(elements) > 1:
-        wanted = [field for field in wanted if field.name != "name"]
-    rows = model.row_of_entity[[element.entity for element in elements]].astype(np.intp)
-    subject = Subject(section, tuple(elements), rows, tuple(wanted))
-    if kind is Load and not _turn(model, subject):
-        wanted.remove(Load.moment)
-    return replace(subject, fields=tuple(wanted))
-
-
 # --- boxes -------------------------------------------------------------------------------------------
 
 
 def boxes_of(model: Model, selected: Sequence[Handle]) -> list[Box]:
-    """Their boxes: in each section alphabetical by title in English, so that Tab goes on alike; vectors as two, x and y."""
-    found: list[Box] = []
-    for subject in _subjects(model, selected):
-        boxes = (box for field in subject.fields for box in _boxes(model, subject, field))
-        found += sorted(boxes, key=lambda box: box.title.casefold())
-    return found
+    """Their boxes in groups, in each those that matter first; vectors as two, x and y."""
+    subjects = _subjects(model, selected)
+    return [box for subject in subjects for field in subject.fields for box in _boxes(model, subject, field)]
 
 
 def refresh(form: Form, model: Model, selected: Sequence[Handle]) -> None:

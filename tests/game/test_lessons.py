@@ -155,25 +155,25 @@ def test_a_first_structure_may_be_drawn_anywhere_in_any_order(
             session.press("p", session.point(*corners[number]))
         session.update_view()
         assert course.accepted
-        session.press("f5")
+        session.press("f10")
         session.press("home")
         for number in order:
             session.press("l", session.point(*corners[number]))
             session.click(*corners[(number + 1) % 3])
         session.update_view()
         assert course.accepted
-        session.press("f5")
+        session.press("f10")
         session.press("c", session.point(*right))
         session.press("c", session.point(*left))
         session.press("c", session.point(*left))
         session.update_view()
         assert course.accepted, course.said
-        session.press("f5")
+        session.press("f10")
         session.press("f", session.point(*top))
         session.click(top[0], top[1] - 1.0)
         session.update_view()
         assert course.accepted, course.said
-        session.press("f5")
+        session.press("f10")
         assert session.scene == "statics"
         course.answer("They are squeezed and push on their joints")
         assert course.accepted, course.said
@@ -182,10 +182,15 @@ def test_a_first_structure_may_be_drawn_anywhere_in_any_order(
 def test_choices_are_made_by_key_mouse_and_script(session: Session) -> None:
     course = begun(session, "02_tension_or_compression", 1)
     session.press("2")
+    assert (course.choice, course.mood) == ("Compression: A and C are pushed together", "")
+    session.press("return")
     assert (course.accepted, course.mood) == (False, "wrong")
     session.update_view()
     push(session, "answer 1")
+    assert (course.accepted, course.said) == (False, "")
+    session.press("f5")
     assert course.accepted
+    assert "ties A to C" in course.said
 
 
 @pytest.mark.parametrize("typed", ["30", "30.2", "29,9", "+30"])
@@ -214,7 +219,7 @@ def test_a_wrong_number_is_explained_and_typed_anew(session: Session) -> None:
     assert course.accepted
 
 
-def test_return_goes_on_from_a_number_that_was_right(session: Session) -> None:
+def test_neither_check_nor_return_skips_an_explanation(session: Session) -> None:
     course = begun(session, "05_stiffness", 1)
     for typed, said in (("-4", "size of −4 is too large"), ("-2", "size of −2 is too small")):
         session.type(typed)
@@ -223,7 +228,10 @@ def test_return_goes_on_from_a_number_that_was_right(session: Session) -> None:
     session.type("-2.93")
     session.press("return")
     assert course.accepted
-    session.press("return")
+    session.press("f5")
+    assert course.at == 0
+    assert course.said
+    session.press("f10")
     assert (course.at, session.scene) == (1, "statics")
     session.press("return")
     session.scenes.apply(session)
@@ -298,7 +306,7 @@ def test_a_task_begins_undeformed_and_without_a_mode(session: Session) -> None:
     session.press("e")
     session.press("b")
     session.course.answer(30)
-    session.press("f5")
+    session.press("f10")
     session.update_view()
     assert course.at == 1
     assert session.view.shape is None
@@ -315,7 +323,7 @@ def test_frames_show_and_are_judged_by_what_a_hand_calculates(session: Session) 
     assert session.rods["BC"].bending_moment[1] == pytest.approx(-65.58, abs=0.01)
     session.course.answer(["BC", "CD"])
     assert "65.58 kN·m" in course.said
-    session.press("f5")
+    session.press("f10")
     for line in course.task.solution:
         assert list(perform(session, line[1])) == []
     session.update_view()
@@ -377,7 +385,7 @@ def test_each_task_begins_in_its_mode(session: Session) -> None:
     session.press("q")
     course.answer(30)
     for scene in ("statics", "pause"):
-        session.press("f5")
+        session.press("f10")
         assert session.scene == scene
         session.press("q")
         session.press("f8")
@@ -452,7 +460,7 @@ def test_own_work_is_kept_and_that_of_a_lesson_asks_for_nothing() -> None:
     mine = session.model
     taken_up(session, "03_stable_or_mechanism")
     session.press("f7")
-    session.press("f5")
+    session.press("f10")
     session.press("l", session.point(0, 0))
     session.click(2, 2)
     assert not session.document.unsaved
@@ -471,9 +479,44 @@ def test_the_last_task_leads_to_the_next_lesson(session: Session) -> None:
     course.solve()
     assert course.accepted
     assert progress.done("08_first_yield").tasks == frozenset(), "to be shown is not to have done it"
-    session.press("f5")
+    session.press("f10")
     assert session.course is not None
     assert session.course.lesson.name == "09_collapse_and_unloading"
+
+
+def test_a_lesson_that_resumes_says_so_and_its_dots_lead_to_any_task(session: Session) -> None:
+    begun(session, "06_statically_indeterminate", 1).answer(1)
+    session = Session(Model())
+    course = taken_up(session, "06_statically_indeterminate")
+    assert (course.at, course.mood) == (1, "hint")
+    assert "where you stopped" in course.said
+    for task in (0, 3):
+        session.update_view()
+        session.press("click", hits_for(session, "task of dot")[task].middle)
+        assert (course.at, course.said) == (task, "")
+
+
+def test_a_motion_plays_after_the_answer_about_it(session: Session) -> None:
+    course = begun(session, "11_collisions", 1)
+    session.type("4")
+    session.press("f5")
+    assert "Asked: Velocity x of particle ball 2 (m/s)." in course.said
+    assert session.scene == "pause"
+    session.type("3")
+    session.press("f5")
+    assert (course.accepted, session.scene) == (True, "simulation")
+    session.press("f10")
+    assert (course.at, session.scene, session.time) == (1, "pause", 0.0)
+
+
+def test_a_joint_without_rods_shows_its_load_in_statics(session: Session) -> None:
+    begun(session, "15_lightest_bridge", 1)
+    session.update_view()
+    (model, view), *_ = session.stages
+    texts = compose(model, view, load_theme("light")).texts
+    assert "60.00 kN" in texts
+    assert "No rods yet" in texts
+    assert not any("exact" in text for text in texts)
 
 
 # --- lessons of teachers ---------------------------------------------------------------------------------

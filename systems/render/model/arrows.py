@@ -212,6 +212,9 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
     taken = np.full((len(sheet.centres), 2), NO_SUPPORT)  # by reactions: a side of each particle, by axis
     applied = particles.applied_force - borne_between(sheet.model)  # rows of arrows show the others
+    if sheet.model.first_order:
+        left_out = ~nodes(sheet.model)
+        applied[left_out] = full_load(sheet.model)[left_out, :2]
     for name, force in (("reaction", particles.reaction[shown]), ("load", applied[shown])):
         index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST))
         if len(index):

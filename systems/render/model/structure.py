@@ -130,7 +130,7 @@ def draw_halos(sheet: Sheet) -> None:
 
 
 def draw_rods(sheet: Sheet) -> None:
-    """A line between the drawn positions of the ends, violet while yielding.
+    """A line between the drawn positions of the ends, magenta while yielding.
 
     Cables are thin, and dashed while they are slack.
     """

@@ -34,10 +34,11 @@ def compose_lesson(card: Card, view: View, theme: Theme) -> Picture:
     thin = max(round(u), 1)
     size = (v.width, thin) if v.left == 0 else (thin, v.height)
     paper.marks.append(Panel(v.left, v.top, *size, 0.0, theme.line))
-    in_rows = card.buttons[:1], card.buttons[1:3], card.buttons[3:]  # the main one alone
+    in_rows = card.buttons[:2], card.buttons[2:4], card.buttons[4:]
+    main = next((one for one in card.buttons if one.enabled), None)
     rows = [
         Row(
-            [_button(one, theme, main=one is card.buttons[0]) for one in row],
+            [_button(one, theme, main=one is main) for one in row],
             6.0,
             even=True,
             high=24.0,
@@ -48,10 +49,7 @@ def compose_lesson(card: Card, view: View, theme: Theme) -> Picture:
     ]
     buttons = Column(rows, 6.0, wide=_BESIDE if strip else 0.0, high=30.0 * len(rows) + 12.0)
     title = Text(card.title, 15.0, theme.text, "semibold", grow=1.0)
-    progress = Row(
-        (Text(card.progress, 12.0, theme.muted), Drawn(partial(_dots, card, theme), 3 * _DOT * card.count)),
-        12.0,
-    )
+    progress = Row((Text(card.progress, 12.0, theme.muted), Row(_dots(card, theme))), 12.0)
     head: Part = Row((title, progress), 16.0) if strip else Column((title, progress), 4.0)
     for points, loose in _TEXTS:
         width = v.width - (2 * _EDGE + (_BESIDE + _EDGE if strip else 0.0)) * u
@@ -95,14 +93,20 @@ def _lines(card: Card, theme: Theme, width: float, u: float, points: float, loos
     return parts
 
 
-def _dots(card: Card, theme: Theme, at: Rectangle, u: float) -> list[Mark]:
-    """A dot for each task."""
-    marks: list[Mark] = []
-    for number in range(card.count):
+def _dots(card: Card, theme: Theme) -> list[Part]:
+    """A dot for each task, which leads there."""
+
+    def dot(number: int) -> Plate:
         full = theme.text if number == card.at else theme.running if number in card.done else theme.line
-        radius, middle = (1.25 if number == card.at else 1.0) * _DOT * u, at.left + (3 * number + 1) * _DOT * u
-        marks.append(Stamps("disc", np.array([[middle, at.middle[1]]]), radius, u, full, full))
-    return marks
+        radius = (1.25 if number == card.at else 1.0) * _DOT
+
+        def draw(at: Rectangle, u: float) -> list[Mark]:
+            return [Stamps("disc", np.array([at.middle]), radius * u, u, full, full)]
+
+        sign = Drawn(draw, 4 * _DOT, 5 * _DOT)
+        return button(sign, "task of dot", theme, item=number, inset=0.0)
+
+    return [dot(number) for number in range(card.count)]
 
 
 def _sign(mood: str, theme: Theme, size: int, at: Rectangle, u: float) -> list[Mark]:
