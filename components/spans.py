@@ -40,6 +40,50 @@ def groups(first: Rows, last: Rows) -> tuple[Rows, Rows]:
     return of, np.arange(len(of)) - np.repeat(np.cumsum(many) - last, many)
 
 
+class Spans(NamedTuple):
+    """What acts between the ends of rods: on which (k,), from which share to which, and of whose load, −1: the rod's own.
+
+    force (kN), moment (kN·m): at the start; first, last: force per length there and at the end (kN/m); (k, 2) but moments.
+    """
+
+    row: Rows
+    start: Column
+    end: Column
+    force: Column
+    moment: Column
+    first: Column
+    last: Column
+    load: Rows
+
+    @classmethod
+    def of(cls, world: World) -> Spans:
+        """Those of a model, along x and y; places beyond the end of a rod count as its end."""
+        rods, loads = world.tables["rods"], world.tables["span_loads"]
+        own = np.flatnonzero(rods.distributed_force.any(axis=1))
+        nothing, none, force = np.zeros((len(own), 2)), np.zeros(len(own)), rods.distributed_force[own]
+        found = cls(own, none, none + 1.0, nothing, none, force, force, np.full(len(own), -1))
+        if not loads.count:
+            return found
+        row = loads.rod.astype(np.intp)
+        length = np.maximum(rods.original_length[row], 1e-300)
+        local = (loads.column("direction") == DIRECTIONS[1])[:, None]
+        ahead = np.where(local, rods.difference[row] / length[:, None], [1.0, 0.0])
+        left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
+        forces = (
+            given[:, :1] * ahead + given[:, 1:] * left
+            for given in (loads.force, loads.start_intensity, loads.end_intensity)
+        )
+        force, first, last = forces
+        start = np.minimum(loads.start / length, 1.0)
+        end = np.maximum(np.minimum(np.nan_to_num(loads.end / length, nan=1.0), 1.0), start)
+        more = (row, start, end, force, loads.moment, first, last, np.arange(loads.count))
+        return cls(*map(np.concatenate, zip(found, more, strict=True)))
+
+    def some(self, which: NDArray[np.bool_]) -> Spans:
+        """Some of them."""
+        return Spans(*(column[which] for column in self))
+
+
 class Kinks(NamedTuple):
     """Terms of what acts along rods, by rod and place: row, a, n and size, (k,); of whose load, −1 being the rod's own.
 
@@ -54,42 +98,29 @@ class Kinks(NamedTuple):
 
     @classmethod
     def of(cls, world: World, share: float = 1.0) -> Kinks:
-        """Those of a model, of so much of its loads; places beyond the end of a rod count as its end."""
-        rods, loads = world.tables["rods"], world.tables["span_loads"]
-        own = np.flatnonzero(rods.distributed_force.any(axis=1))
-        uniform = np.pad(rods.distributed_force[own] * rods.rest_length[own, None], ((0, 0), (0, 1)))
-        parts = [(own, np.zeros(len(own)), 0, uniform, np.full(len(own), -1))]
-        if loads.count:
-            row = loads.rod.astype(np.intp)
-            original, rest = rods.original_length[row], rods.rest_length[row, None]
-            ahead = rods.difference[row] / np.maximum(original, 1e-300)[:, None]
-            ahead = np.where((loads.column("direction") == DIRECTIONS[1])[:, None], ahead, [1.0, 0.0])
-            left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
-            start = np.minimum(loads.start / np.maximum(original, 1e-300), 1.0)
-            end = np.minimum(np.nan_to_num(loads.end / np.maximum(original, 1e-300), nan=1.0), 1.0)
-            width = np.maximum(end - start, 0.0)[:, None]
-            force, first, last = (
-                np.pad(factor * (given[:, :1] * ahead + given[:, 1:] * left), ((0, 0), (0, 1)))
-                for given, factor in (
-                    (loads.force, 1.0),
-                    (loads.start_intensity, rest * (width > 0.0)),
-                    (loads.end_intensity, rest * (width > 0.0)),
-                )
-            )
-            growth = np.divide(last - first, width, out=np.zeros_like(first), where=width > 0.0)
-            couple = loads.moment[:, None] * [0.0, 0.0, -1.0]
-            every = np.arange(loads.count)
-            parts += [
-                (row, start, order, size, every)
-                for order, size in enumerate((couple, force, first, growth), -2)
-            ]
-            parts += [(row, end, order, -size, every) for order, size in enumerate((last, growth))]
-        columns = [[part[k] for part in parts] for k in (0, 1, 3, 4)]
-        orders = np.repeat([part[2] for part in parts], [len(part[0]) for part in parts])
-        row, place, size, load = map(np.concatenate, columns)
-        acting = np.flatnonzero(size.any(axis=1) & ((place < 1.0) | (orders < 0)))
-        acting = acting[np.lexsort((place[acting], row[acting]))]
-        return cls(row[acting], place[acting], orders[acting], share * size[acting], load[acting])
+        """Those of a model, of so much of its loads."""
+        row, start, end, force, moment, first, last, load = Spans.of(world)
+        per_share = share * world.tables["rods"].rest_length[row, None] * (end > start)[:, None]
+        growth = np.divide(
+            last - first, (end - start)[:, None], out=np.zeros_like(first), where=per_share > 0.0
+        )
+        parts = (
+            (-2, start, np.zeros_like(force)),
+            (-1, start, share * force),
+            (0, start, per_share * first),
+            (1, start, per_share * growth),
+            (0, end, -per_share * last),
+            (1, end, -per_share * growth),
+        )
+        order = np.repeat([part[0] for part in parts], len(row))
+        place = np.concatenate([part[1] for part in parts])
+        size = np.pad(np.concatenate([part[2] for part in parts]), ((0, 0), (0, 1)))
+        size[: len(row), 2] = -share * moment
+        acting = np.flatnonzero(size.any(axis=1) & ((place < 1.0) | (order < 0)))
+        whose = acting % max(len(row), 1)
+        acting = acting[np.lexsort((order[acting], place[acting], row[whose]))]
+        whose = acting % max(len(row), 1)
+        return cls(row[whose], place[acting], order[acting], size[acting], load[whose])
 
     def some(self, which: NDArray[np.bool_]) -> Kinks:
         """Some of them."""

@@ -1,6 +1,6 @@
 """Loads between the ends of rods, against members divided at them, formulas of textbooks, fine meshes, and energy."""
 
-import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -163,3 +163,99 @@ def test_a_run_comes_to_rest_where_exact_statics_says() -> None:
     assert np.abs(model.particles.displacement - state.displacement).max() <= 1e-6
     for name in ("shear", "bending_moment", "end_axial_force", "end_rotation"):
         assert np.abs(getattr(model.rods, name) - state.diagrams[name]).max() <= 1e-5, name
+
+
+# --- formulas of textbooks, of beams clamped at both ends, and of the first of them at the other -----------------------
+
+P, Q, M, L, A = 10.0, 6.0, 8.0, 4.0, 1.5
+B = L - A
+FIXED_END = [  # loads downwards, and M at the start and at the end, positive where the lower side is in tension
+    ({"start": A, "force": [0.0, -P]}, -P * A * B**2 / L**2, -P * A**2 * B / L**2),
+    ({"start": A, "moment": M}, -M * B / L**2 * (2 * A - B), M * A / L**2 * (2 * B - A)),
+    ({"end_intensity": [0.0, -Q]}, -Q * L**2 / 30, -Q * L**2 / 20),
+    (
+        {"end": A, "start_intensity": [0.0, -Q], "end_intensity": [0.0, -Q]},
+        -Q * A**2 / (12 * L**2) * (6 * L**2 - 8 * A * L + 3 * A**2),
+        -Q * A**3 / (12 * L**2) * (4 * L - 3 * A),
+    ),
+    (
+        {"start_intensity": [0.0, -2.0], "end_intensity": [0.0, -Q]},
+        -(L**2) * (2.0 / 12 + (Q - 2.0) / 30),
+        -(L**2) * (2.0 / 12 + (Q - 2.0) / 20),
+    ),
+]
+
+
+@pytest.mark.parametrize(("load", "start", "end"), FIXED_END)
+def test_fixed_end_moments(load: Document, start: float, end: float) -> None:
+    """Of both ends clamped; with a hinge at the other end, M_s + M_e/2."""
+    document = simple(load)
+    for particle in document["particles"]:
+        particle |= {"fixed": [True, True], "fixed_rotation": True}
+    moment = linear(parse(document)).diagrams["bending_moment"][0]
+    assert moment == pytest.approx([start, end], rel=1e-12)
+    document["rods"][0]["hinged"] = [False, True]
+    moment = linear(parse(document)).diagrams["bending_moment"][0]
+    assert moment == pytest.approx([start + end / 2, 0.0], rel=1e-12)
+
+
+@pytest.mark.parametrize("bends", [True, False])
+def test_a_simple_beam_under_a_force(bends: bool) -> None:
+    """M = Pab/L below it, V jumps, and the deflection there is Pa²b²/3EIL; a bar bears it, too."""
+    session = Session.open(simple(FIXED_END[0][0], bending_stiffness=EI if bends else 0.0))
+    model, one = session.model, np.array([0])
+    model.show(session.document.statics)
+    assert model.rods.largest_moment[0] == pytest.approx([P * A * B / L, A], rel=1e-12)
+    shear = inner_forces(model, one, SHEAR).at(np.array([np.nextafter(A / L, 0.0), A / L]))
+    assert shear[0] == pytest.approx([P * B / L, -P * A / L], rel=1e-12)
+    sag = deflections(model, one).at(np.array([A / L]))[0, 0]
+    assert sag == pytest.approx(-P * A**2 * B**2 / (3 * EI * L) if bends else 0.0, rel=1e-12)
+
+
+def test_three_moments() -> None:
+    """A beam of three spans under a trapezium, a force and a couple, against Clapeyron's equations."""
+    spans, ei = (3.0, 4.0, 5.0), 2000.0
+    places = np.cumsum([0.0, *spans])
+    particles = [
+        {"name": n, "position": [x, 0.0], "fixed": [n == "A", True]}
+        for n, x in zip("ABCD", places, strict=True)
+    ]
+    rods = [{"name": n, "between": list(n), "bending_stiffness": ei} for n in ("AB", "BC", "CD")]
+    loads = [
+        {"rod": "AB", "start_intensity": [0.0, -2.0], "end_intensity": [0.0, -6.0]},
+        {"rod": "BC", "start": 1.0, "force": [0.0, -P]},
+        {"rod": "CD", "start": 2.0, "moment": M},
+    ]
+    facts = {"format": "pinjoint model", "version": 1}
+    found = linear(parse(facts | {"particles": particles, "rods": rods, "span_loads": loads}))
+    # 6EI × rotations of simple beams, by which their ends meet: at the end of AB, both of BC, the start of CD.
+    one = 2.0 * 3.0**3 / 4 + 4.0 * 3.0**3 * 2 / 15
+    two = [P * 1.0 * 3.0 * (4.0 + 3.0) / 4.0, P * 1.0 * 3.0 * (4.0 + 1.0) / 4.0]
+    three = M / 5.0 * (5.0**2 - 3.0 * 3.0**2)  # M(L² − 3b²)/L, clockwise, of a couple counter-clockwise
+    matrix = np.array([[2 * (3.0 + 4.0), 4.0], [4.0, 2 * (4.0 + 5.0)]])
+    moments = np.linalg.solve(matrix, [-(one + two[0]), -(two[1] + three)])
+    assert found.diagrams["bending_moment"][:, 0] == pytest.approx([0.0, *moments], rel=1e-9, abs=1e-9)
+
+
+# --- exact geometry ----------------------------------------------------------------------------------------------------
+
+
+def test_the_error_of_exact_geometry_falls_with_the_fourth_power_of_division() -> None:
+    """A cantilever that bends far under a force and a trapezium, neither at a joint of any mesh: halves of halves."""
+    tips = []
+    for parts in (2, 4, 8, 16, 64):
+        document = simple(
+            {"start": 2.3, "force": [0.0, -25.0]},
+            {"start": 0.7, "end": 3.1, "start_intensity": [2.0, -20.0], "end_intensity": [0.0, -40.0]},
+            {"start": 1.9, "moment": 30.0},
+        )
+        document["particles"][0]["fixed_rotation"], document["particles"][1]["fixed"] = True, [False, False]
+        document["rods"][0] |= {"bending_stiffness": 150.0, "stiffness": 1e6}
+        session = Session.open(document)
+        divide(session.model, list(session.model.rods), parts)
+        state = session.statics(theory="exact").final
+        assert state.status == "equilibrium"
+        tips.append(state.displacement[1])
+    errors = [float(np.hypot(*(tip - tips[-1]))) for tip in tips[:-1]]
+    for coarse, fine in pairwise(errors):
+        assert fine < coarse / 10.0

@@ -10,6 +10,7 @@ from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
+from pinjoint.components.load import SpanLoad
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
 from pinjoint.components.tags import Selected
@@ -19,7 +20,7 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.arrows import arrow_end, arrow_value, usual
 from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_particle, pick_rod
 from pinjoint.systems.edit.placing import place, snapped, snapped_to_points
-from pinjoint.systems.edit.rods import check_ends, distance, join
+from pinjoint.systems.edit.rods import check_ends, distance, join, share_at
 from pinjoint.systems.edit.supports import SUPPORTS, Held, next_support, support, support_towards
 from pinjoint.systems.forms.properties import heading
 
@@ -238,12 +239,67 @@ class DrawDistributedForce(DrawArrow):
         return replace(made, along=along) if made is not None else None
 
 
+class DrawSpanLoad(DrawArrow):
+    """A force at a place of a rod; after a second click on the rod, one that is distributed up to there."""
+
+    tool, field, unit = "span load", "force", "kN"
+    asks = marked(
+        "load on {rods}: click where its arrow ends, or on the rod where a distributed load ends     Esc cancel"
+    )
+    says = marked("{rods}: {load}, {place} from its start")
+
+    def __init__(self, context: Context, pixel: Vector, rod: Rod) -> None:
+        self.places = [_along(context, rod, pixel)]
+        super().__init__(context, context.view.camera.to_model(pixel), rod)
+
+    @classmethod
+    def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
+        rod = None if context.view.covers(pixel) else pick_rod(context.model, context.view, pixel)
+        return None if rod is None else cls(context, pixel, rod)
+
+    def start(self, context: Context) -> Vector:
+        """Where the arrow begins (m): at the last place on the rod, as it is drawn."""
+        return _on_rod(context, self.elements[0], self.places[-1])
+
+    def finish(self, context: Context, pixel: Vector) -> None:
+        place, on_rod = _along(context, self.elements[0], pixel), pick_rod(context.model, context.view, pixel)
+        if len(self.places) > 1 or on_rod is not self.elements[0] or place in self.places:
+            super().finish(context, pixel)
+            return
+        self.places.append(place)
+        self.field, self.unit = SpanLoad.end_intensity.name, "kN/m"  # type: ignore[misc]
+        self.hint = tr("distributed load: click where its arrow ends     Esc cancel")
+
+    def drop(self, context: Context, pixel: Vector) -> None:
+        value, [rod] = self.value(context, pixel), self.elements
+        start, *end = sorted(self.places)
+        fields = (self.field, *[SpanLoad.start_intensity.name] * len(end))
+        where = {"start": [start], "end": end or [None]}
+        context.model.create(SpanLoad, 1, rod=[rod.row], **where, **{field: [value] for field in fields})
+        context.select(rod)
+        place = " … ".join(written.length(x, written.DIGITS) for x in (start, *end))
+        context.notice = tr(self.says, rods=begun(rod.said), load=self.shown(value), place=place)
+
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        made, along = (
+            super().preview(context, pixel),
+            [_on_rod(context, self.elements[0], x) for x in self.places],
+        )
+        if made is None or len(along) == 1:
+            return made
+        return replace(made, kind="distributed force", along=((along[0], along[1]),))
+
+
 class DrawMoment(DrawArrow):
-    """The constant moment on a particle: to the left counter-clockwise, to the right clockwise."""
+    """The constant moment on a particle or at a place of a rod: to the left counter-clockwise, to the right clockwise."""
 
     tool, field, unit = "moment", "moment", "kN·m"
     asks = marked("moment on {particle}: click at its left (counter-clockwise) or right     Esc cancel")
     says = marked("Moment on {particle}: {value}")
+
+    @classmethod
+    def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
+        return super().begin(context, pixel) or DrawSpanMoment.begin(context, pixel)
 
     def __init__(self, context: Context, particle: Particle) -> None:
         if not rigid_joints(context.model)[particle.row]:
@@ -255,7 +311,7 @@ class DrawMoment(DrawArrow):
         super().__init__(context, particle)
 
     def value(self, context: Context, pixel: Vector) -> float:
-        x, _ = super().value(context, pixel)
+        x, _ = DrawArrow.value(self, context, pixel)
         return -float(x) + 0.0
 
     def shown(self, value: float) -> str:
@@ -266,6 +322,15 @@ class DrawMoment(DrawArrow):
         value, start = self.value(context, pixel), self.start(context)
         x, _ = context.view.camera.to_model(pixel) if value else start
         return Preview("moment", start, (x, start[1]), self.shown(value))
+
+
+class DrawSpanMoment(DrawSpanLoad):
+    """A moment at a place of a rod."""
+
+    tool, field, unit = "moment", "moment", "kN·m"
+    asks = marked("moment on {rods}: click at its left (counter-clockwise) or right     Esc cancel")
+    value, shown, preview = DrawMoment.value, DrawMoment.shown, DrawMoment.preview  # type: ignore[assignment]
+    finish = Drawing.finish
 
 
 class DrawVelocity(DrawArrow):
@@ -328,6 +393,19 @@ class DrawElement(Drawing):
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         start, end = self.start(context), snapped_to_points(context.model, context.view, pixel)
         return Preview("rod", start, end, _length_and_angle(start, end))
+
+
+def _along(context: Context, rod: Rod, pixel: Vector) -> float:
+    """How far from its start (m) a pixel lies on a rod, at a line of the grid if one is near."""
+    point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
+    return round(min(max(share_at(rod, point), 0.0), 1.0) * rod.original_length, 3)
+
+
+def _on_rod(context: Context, rod: Rod, place: float) -> Vector:
+    """Where a place of a rod, so far from its start (m), is drawn."""
+    start, end = drawn_positions(context.model)[list(rod.between)]
+    x, y = (start + place / rod.original_length * (end - start)).tolist()
+    return x, y
 
 
 def _length_and_angle(start: Vector, end: Vector) -> str:

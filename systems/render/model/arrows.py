@@ -225,6 +225,7 @@ def largest_force(model: Model, view: View) -> float:
     """The largest force (kN) that an arrow may show: of loads at full size, and in diagrams of their parts and reactions."""
     particles = model.particles
     largest = float(np.hypot(*full_load(model)[:, :2].T).max(initial=SMALLEST))
+    largest = max(largest, float(np.hypot(*model.span_loads.force.T).max(initial=0.0)))
     if view.forces_known and (view.all_diagrams or model.any_tagged(DiagramShown)):
         for forces in (particles.applied_force, particles.reaction):
             largest = max(largest, float(np.abs(forces).max(initial=0.0)))

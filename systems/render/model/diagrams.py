@@ -73,7 +73,7 @@ _NEAR = 42.0  # points along a rod, or a step: so far from its end stands a valu
 _INSETS = ((0.0, 0.0), (6.0, 6.0), (12.0, -6.0), (18.0, 12.0), (25.0, -12.0), (33.0, 18.0))
 # Shares, where the lines may end, too.
 _ON_RODS = np.array([0.5, 0.35, 0.65, 0.2, 0.8, 0.28, 0.72, 0.12, 0.88, 0.43, 0.57])
-_PLACES = 3  # of values of a rod: start, end, between
+_PLACES = 6  # of values of a rod: start, end, and between
 
 
 @dataclass(frozen=True)
@@ -404,7 +404,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
         edges = edge[:, None] + (ANCHORS[:, None] - 0.5) * way[:, None]
         anchors = np.concatenate([edges, at[:, None] + (_ON_RODS[:, None] - 0.5) * way[:, None]], axis=1)
     else:
-        inward = np.array([1.0, -1.0, 0.0])[number]
+        inward = np.array([1.0, -1.0, 0.0])[np.minimum(number, 2)]
         places = _places_by_curves(at, normal, along, height, inward, half, sheet.unit)
         anchors = _ends_of_lines(sheet, diagram, which, shares[shown], number)
         worth = worth + np.where(np.abs(value) > _GREAT * diagram.largest, 2e9, 0.0)  # before arrows
@@ -457,8 +457,16 @@ def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:
     kept &= (np.abs(between[:, None] - ends[which]) > _ALIKE * largest).all(axis=1)
     which, shares, between = which[kept], shares[kept], between[kept]
     order = np.lexsort((-np.abs(between), which))  # of several in a rod the largest
-    first = order[np.unique(which[order], return_index=True)[1]]
-    which, shares, between = which[first], shares[first], between[first]
+    number = np.where(np.diff(which[order], prepend=-1) != 0, 0, _PLACES)
+    for row in np.unique(curves.row).tolist():  # where loads act inside, all that differ
+        told_here: list[float] = []
+        for at in range(*np.searchsorted(which[order], [row, row + 1]).tolist()):
+            value = float(between[order[at]])
+            known = any(abs(value - other) <= _ALIKE * largest for other in told_here)
+            number[at] = _PLACES if known else len(told_here)
+            told_here += [] if known else [value]
+    order, number = order[number < _PLACES - 2], number[number < _PLACES - 2]
+    which, shares, between = which[order], shares[order], between[order]
     same = np.abs(ends[:, 0] - ends[:, 1]) <= _ALIKE * largest
     same[which] = False
     middle = np.flatnonzero(same & (told.any(axis=1) | (quantity == AXIAL)))
@@ -470,7 +478,7 @@ def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:
     rod, end = np.nonzero(told)
     return (
         np.concatenate([rod, which, every[middle]]),
-        np.concatenate([end, np.full(len(which) + len(middle), 2)]),
+        np.concatenate([end, 2 + number, np.full(len(middle), 2)]),
         np.concatenate([end.astype(np.float64), shares, np.full(len(middle), 0.5)]),
         np.concatenate([ends[rod, end], between, curves.some(middle).at(np.array([0.5]))[:, 0]]),
     )
@@ -512,7 +520,9 @@ def _ends_of_lines(sheet: Sheet, diagram: _Diagram, which: Rows, shares: Values,
     """Where lines from values may end, (n, k, 2): on the edge of the diagram, in it, on the rod, then the same further along
     it, off the joint, where others begin, too."""
     length = np.hypot(*(diagram.base.end - diagram.base.start)[which].T)[:, None]
-    insets = np.array([(from_end, -from_end, between) for from_end, between in _INSETS])[:, ends].T
+    insets = np.array([(from_end, -from_end, between) for from_end, between in _INSETS])[
+        :, np.minimum(ends, 2)
+    ].T
     along = shares[:, None] + np.clip(insets * sheet.unit / np.maximum(length, 1e-9), -0.4, 0.4)
     along = np.clip(along, 0.0, 1.0)
     at, normal = _stations(diagram.base.some(which), along, diagram.side[which])
