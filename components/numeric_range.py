@@ -11,6 +11,7 @@ from pinjoint.components.language import begun, decimals, joined, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import obstacles
 from pinjoint.components.wording import cut
+from pinjoint.components.written import ROUNDING
 
 UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
 
@@ -28,7 +29,7 @@ def incomputable(model: Model) -> str:
 
     Only what changed since there was none is looked at.
     """
-    problem = _out_of_range(model) or _too_far(model)
+    problem = _out_of_range(model) or _too_far(model) or _beyond(model)
     model.sound = model.sound if problem else model.revision
     return problem
 
@@ -59,6 +60,21 @@ def _too_far(model: Model) -> str:
             name=cut(others.names[row]),
             far=far[row],
             spacing=np.spacing(far[row]),
+        )
+    return ""
+
+
+def _beyond(model: Model) -> str:
+    """The sentence that names a span load that reaches beyond its rod; "" if there is none."""
+    loads, rods = model.span_loads, model.rods
+    reach, length = np.fmax(loads.start, loads.end), rods.original_length[loads.rod]
+    for row in np.flatnonzero(reach > length * (1.0 + ROUNDING))[:1].tolist():
+        return tr(
+            "{load} reaches {reach:g} m along {rod}, which is only {length:g} m long; let it end there, or move it.",
+            load=begun(model.describe(loads[row])),
+            rod=model.describe(rods[int(loads.rod[row])]),
+            reach=reach[row],
+            length=length[row],
         )
     return ""
 

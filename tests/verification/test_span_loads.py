@@ -15,6 +15,7 @@ from pinjoint.systems.edit.dividing import divide
 from pinjoint.systems.statics.theory import Indeterminacy, linear
 from tests.reference import frame_theory
 from tests.reference.span_loads import divided
+from tests.verification.test_force_method_of_frames import checked, redundants
 from tests.verification.test_frame_theory import free, held, random_frame
 
 Document = dict[str, Any]
@@ -105,6 +106,15 @@ def test_loads_travel_with_divide(seed: int, parts: int) -> None:
         assert np.abs(found - wanted).max() <= 1e-8 * max(np.abs(wanted).max(), 1e-3), name
     session.undo()
     assert [tuple(load.force) for load in model.span_loads] == loads
+
+
+@settings(max_examples=15, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_the_force_method_superposes_them(seed: int) -> None:
+    """By virtual work over moments that are no parabolas, with all unknowns."""
+    made = parse(with_loads(seed))
+    if not Indeterminacy.of(made).mechanisms:
+        checked(made, redundants(made))
 
 
 def simple(*loads: Document, **facts: Any) -> Document:
