@@ -17,6 +17,7 @@ from pinjoint.components.derived import (
     cubic,
     moments_along,
     on_axis,
+    own_slopes,
     rigid_slopes,
 )
 from pinjoint.components.model import Model
@@ -35,17 +36,17 @@ _STEEP, _STEEPEST = 0.05, 2.5  # rad, slopes from which on tangents are drawn tr
 
 @dataclass(frozen=True)
 class Parts:
-    """Rods: original positions of their ends (n, 2) in m, which two each joins, (p, 2), and which of these are rigid."""
+    """Rods: original positions of their ends (n, 2) in m, which two each joins, (p, 2), and how firmly, (p, 2)."""
 
     position: Array
     between: Rows
-    rigid: NDArray[np.bool_]
+    fixity: Array
 
     @classmethod
     def of(cls, model: Model) -> Parts:
         """All rods of a model."""
         rods = model.rods
-        return cls(model.particles.position, rods.between.astype(np.intp), rods.turning_shares > 0.0)
+        return cls(model.particles.position, rods.between.astype(np.intp), rods.fixity)
 
 
 @dataclass(frozen=True)
@@ -83,13 +84,13 @@ class Axes:
 
         Their ends, at places (particles, 2), are all that is drawn of what was before.
         """
-        ends, rigid = parts.between, parts.rigid
+        ends = parts.between
         difference = parts.position[ends[:, 1]] - parts.position[ends[:, 0]]
         length = np.hypot(*difference.T)
         left = np.stack([-difference[:, 1], difference[:, 0]], axis=1) / np.maximum(length, 1e-300)[:, None]
         chord = ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * left).sum(axis=1)
-        slopes = np.where(rigid, length[:, None] * rotation[ends] - chord[:, None], 0.0)
-        slopes = np.where(rigid, slopes, np.where(rigid[:, ::-1], -0.5 * slopes[:, ::-1], 0.0))
+        turned = length[:, None] * rotation[ends] - chord[:, None]
+        slopes = np.einsum("rij,rj->ri", own_slopes(parts.fixity), turned)
         return cls(places[ends[:, 0]], places[ends[:, 1]], left, Curves.plain(cubic(*slopes.T)))
 
     def some(self, which: Rows | NDArray[np.bool_]) -> Axes:

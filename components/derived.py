@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from pinjoint.components.field import Column, Field
 from pinjoint.components.load import SpanLoad, varying
@@ -106,67 +106,76 @@ def masses(world: World) -> None:
 
 @derives(
     "rods",
-    "end_stiffness end_damping initial_slopes bowing turning_shares",
-    "bending_stiffness stiffness rest_length hinged damping bending_damping thermal_expansion temperature_gradient",
+    "end_stiffness end_damping initial_slopes bowing turning_shares fixity",
+    "bending_stiffness stiffness rest_length hinged end_springs damping bending_damping thermal_expansion"
+    " temperature_gradient",
 )
 def bending(world: World) -> None:
-    """What the ends of each rod feel, by its hinges: coefficients of slopes, all zero where nothing bends.
+    """What the ends of each rod feel, by their joints: coefficients of slopes, all zero where nothing bends.
 
-    A hinge is condensed: its end has no moment, and the shape of the rod is that without axial force.
+    Hinges and springs are condensed: the shape of the rod is that without axial force.
     """
     rods = world.tables["rods"]
-    length, stiffness = rods.rest_length, rods.bending_stiffness
-    rigid: Column = ~rods.hinged & np.stack([stiffness, stiffness], axis=1).astype(bool)
-    if not rigid.any():
-        for name in ("end_stiffness", "end_damping", "initial_slopes", "bowing", "turning_shares"):
-            world.writable(f"rods.{name}")[...] = 0.0
+    length, stiffness, springs = rods.rest_length, rods.bending_stiffness, rods.end_springs
+    bent = (stiffness > 0.0)[:, None]
+    if not (bent & ~(rods.hinged & (springs == 0.0))).any():
+        for name in bending.targets:
+            world.writable(name)[...] = 0.0
         return
     with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
-        per_slope, of_ends = by_hinges(rigid, length)
+        softened = springs / np.where(springs > 0.0, springs + (3.0 * stiffness / length)[:, None], 1.0)
+        fixity = np.where(springs > 0.0, softened, ~rods.hinged) * bent
+        per_slope, of_ends = by_fixity(fixity)
         world.writable("rods.end_stiffness")[...] = (stiffness / length)[:, None] * per_slope
         damping = _or_automatic(rods.bending_damping, rods.damping * stiffness / rods.stiffness)
         world.writable("rods.end_damping")[...] = damping[:, None] * per_slope
         half = -0.5 * rods.thermal_expansion * rods.temperature_gradient * length
-        world.writable("rods.initial_slopes")[...] = half[:, None] * rigid * [-1.0, 1.0] + 0.0
+        world.writable("rods.initial_slopes")[...] = half[:, None] * (fixity > 0.0) * [-1.0, 1.0] + 0.0
     for name, values in of_ends.items():
         world.writable(f"rods.{name}")[...] = values
 
 
-def by_hinges(rigid: Column, length: Column) -> tuple[Column, dict[str, Column]]:
-    """End stiffnesses per EI/L₀, (rods, 3), and bowing and turning_shares of rods with these rigid ends."""
-    both = np.asarray(rigid.all(axis=1))
-    start, end = (rigid & ~both[:, None]).T  # the only rigid end
-
-    def by_ends(of_start: ArrayLike, mixed: ArrayLike, of_end: ArrayLike, alone: ArrayLike) -> Column:
-        alone = np.broadcast_to(alone, len(length))
-        rows = (
-            np.where(both, of_start, np.where(start, alone, 0.0)),
-            np.where(both, mixed, 0.0),
-            np.where(both, of_end, np.where(end, alone, 0.0)),
-        )
-        return np.stack(rows, axis=1)
-
-    return by_ends(4.0, 2.0, 4.0, 3.0), {
-        "bowing": by_ends(4.0 / 30.0, -1.0 / 30.0, 4.0 / 30.0, 0.2),
-        "turning_shares": by_ends(0.5, 0.0, 0.5, 1.0)[:, ::2],
+def by_fixity(fixity: Column) -> tuple[Column, dict[str, Column]]:
+    """End stiffnesses per EI/L₀, (rods, 3), and the columns of these names, of rods whose ends are held so, (rods, 2)."""
+    start, end = fixity.T
+    both = 4.0 - start * end
+    (ss, se), (es, ee) = np.moveaxis(own_slopes(fixity), 0, -1)
+    bowing = [4.0 * ss**2 - 2.0 * ss * es + 4.0 * es**2, 4.0 * ss * se - ss * ee - se * es + 4.0 * es * ee]
+    bowing.append(4.0 * se**2 - 2.0 * se * ee + 4.0 * ee**2)
+    shares = fixity / np.where(fixity.any(axis=1), start + end, 1.0)[:, None]
+    return np.stack([12.0 * start, 6.0 * start * end, 12.0 * end], axis=1) / both[:, None], {
+        "fixity": fixity,
+        "bowing": np.stack(bowing, axis=1) / 30.0 + 0.0,
+        "turning_shares": shares,
     }
 
 
-@derives("rods", "span_load", f"turning_shares {_BETWEEN}")
+def own_slopes(fixity: Column) -> Column:
+    """How the slopes of rods' own ends follow from those of their joints without load, (rods, 2, 2).
+
+    A spring k lets the end of a rod turn by M/k less than its joint; one without stiffness is a hinge. By its transpose,
+    moments that hold both ends still become those that hold the joints still.
+    """
+    start, end = fixity.T
+    rows = [[start * (4.0 - end), 2.0 * (start - 1.0) * end], [2.0 * (end - 1.0) * start, end * (4.0 - start)]]
+    own: Column = np.moveaxis(np.array(rows), -1, 0) / (4.0 - start * end)[:, None, None]
+    return own
+
+
+@derives("rods", "span_load", f"fixity {_BETWEEN}")
 def span_loads(world: World) -> None:
-    """What acts between the ends of rods, by slopes of those ends that are joined rigidly."""
+    """What acts between the ends of rods, by slopes of their joints."""
     rods = world.tables["rods"]
     clamped = Kinks.of(world).on_clamped(rods.rest_length)
-    world.writable("rods.span_load")[...] = by_rigid_ends(clamped, rods.turning_shares > 0.0)
+    world.writable("rods.span_load")[...] = on_joints(clamped, rods.fixity)
 
 
-def by_rigid_ends(clamped: Column, rigid: NDArray[np.bool_]) -> Column:
-    """Loads by slopes of clamped ends, (rods, 7), as rods bear them with these rigid ends: a hinge carries over."""
+def on_joints(clamped: Column, fixity: Column) -> Column:
+    """Work of loads by slopes of clamped ends, (rods, 7), as that by slopes of joints that hold the ends so."""
     found = clamped.copy()
-    by_end = clamped[:, :6].reshape(-1, 2, 3)
-    alone = rigid & ~rigid[:, ::-1]
-    own = np.where(rigid[:, :, None], by_end, 0.0) - np.where(alone[:, :, None], 0.5 * by_end[:, ::-1], 0.0)
-    found[:, :6] = own.reshape(-1, 6)
+    found[:, :6] = np.einsum("rij,rik->rjk", own_slopes(fixity), clamped[:, :6].reshape(-1, 2, 3)).reshape(
+        -1, 6
+    )
     return found
 
 
@@ -352,20 +361,18 @@ def rigid_slopes(rods: Table[Any], rotation: Column, chord: Column) -> Column:
 
 
 def all_slopes(rods: Table[Any], slopes: Column, load: Column) -> Column:
-    """Slopes of both ends of every rod, those at hinges by M = 0 of its cubic and of what acts between clamped ends.
+    """Slopes of rods' own ends, by those of their joints (0 at hinges), warmth and what acts between clamped ends.
 
     load: that, by unit slopes of these, (rods, 2).
     """
     length, stiffness = rods.rest_length, rods.bending_stiffness
-    rigid, bent = rods.turning_shares > 0.0, stiffness > 0.0
-    soft = np.divide(length, stiffness, out=np.zeros(len(length)), where=bent)
+    bent = stiffness > 0.0
+    loaded = np.divide(length, stiffness, out=np.zeros(len(length)), where=bent)[:, None] * load
     warped = np.where(bent, 0.5 * rods.thermal_expansion * rods.temperature_gradient * length, 0.0)
-    free = np.array([1.0, -1.0]) * warped[:, None]
-    loaded = soft[:, None] * load
-    beyond = (slopes - free)[:, ::-1]  # of the other end
-    simple = loaded / 3.0 - loaded[:, ::-1] / 6.0
-    hinged = free + np.where(rigid[:, ::-1], 0.25 * loaded - 0.5 * beyond, simple)
-    return np.where(rigid, slopes, hinged)
+    free = np.array([1.0, -1.0]) * warped[:, None] + loaded / 3.0 - loaded[:, ::-1] / 6.0  # between hinges
+    own = own_slopes(rods.fixity)
+    found: Column = np.einsum("rij,rj->ri", own, slopes) + np.einsum("rij,rj->ri", np.eye(2) - own, free)
+    return found
 
 
 def cubic(start: Column, end: Column) -> Column:

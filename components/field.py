@@ -228,9 +228,7 @@ class Field(Generic[T]):
     def _check_number(self, value: Any, where: str, axis: str = "") -> Any:
         if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
             if self.dtype == "reference":
-                what = marked(
-                    "{where}: {title} is {value}; it must be the row of an element, such as its .row."
-                )
+                what = marked("{where}: {title} is {value}; it must be an element, its name or its row.")
             else:
                 what = marked("{where}: {title} is {value}; it must be a number.")
             raise self._refusal(what, where, value, axis)

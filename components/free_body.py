@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.bent import borne_between, is_frame
-from pinjoint.components.derived import by_rigid_ends, chord_rotation, rigid_slopes
+from pinjoint.components.derived import chord_rotation, on_joints, rigid_slopes
 from pinjoint.components.language import tr
 from pinjoint.components.load import factor_now
 from pinjoint.components.model import Model
@@ -190,7 +190,7 @@ def on_rod(model: Model, row: int) -> list[Force]:
     for load in np.unique(between.load[between.row == row]).tolist():
         own = between.some((between.row == row) & (between.load == load))
         own = own._replace(row=np.zeros_like(own.row))
-        work = by_rigid_ends(own.on_clamped(its_length), rigid)[0]
+        work = on_joints(own.on_clamped(its_length), rods.fixity[row : row + 1])[0]
         (near, far), bowed = own.on_ends(1)[0], slopes @ work[:6].reshape(2, 3)[:, :2]
         lever = length * float(along[0] * far[1] - along[1] * far[0])
         lever += float(left[0] * bowed[1] - left[1] * bowed[0])

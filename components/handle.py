@@ -102,7 +102,13 @@ class Handle:
         """
 
     def __repr__(self) -> str:
-        return f"<{self.world.describe(self)}>" if self.exists else f"<deleted {self.noun}>"
+        if not self.exists:
+            return f"<deleted {self.noun}>"
+        if not self.single:
+            return f"<{self.world.describe(self)}>"
+        fields = self.world.tables[self.table].fields.values()
+        values = (f"{field.name}={getattr(self, field.name)!r}" for field in fields if field.overrides is None)
+        return f"<{self.noun}: {', '.join(values)}>"
 
 
 # Setters of the slots, for many handles at once without __setattr__.

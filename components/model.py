@@ -58,3 +58,9 @@ class Model(World):
         self.foreign_kinds: dict[str, Any] = {}
         self.foreign_versions: dict[str, str] = {}
         self.sliders: tuple[Slider, ...] = ()
+
+    def __repr__(self) -> str:
+        counts = ", ".join(
+            f"{table.count} {name}" for name, table in self.tables.items() if not table.kind.single
+        )
+        return f"<Model '{self.title or 'untitled'}': {counts}>"

@@ -149,6 +149,14 @@ class Rod(Handle):
         axes=ENDS,
         doc="Ends that turn freely; the others are rigidly joined. Without bending stiffness both turn freely.",
     )
+    end_springs: Field[Vector] = Field(
+        "kN·m/rad",
+        shape=(2,),
+        axes=ENDS,
+        minimum=0.0,
+        doc="Stiffness of springs that join its ends to what turns with their particles, in place of hinges or rigid"
+        " joints; 0: none.",
+    )
     distributed_force: Field[Vector] = Field(
         "kN/m",
         shape=(2,),
@@ -195,7 +203,7 @@ class Rod(Handle):
         "kN·m",
         shape=(3,),
         axes=("ss", "se", "ee"),
-        doc="End moments per slope: EI/L₀ (4, 2, 4), with one hinge 3 EI/L₀ at the other end.",
+        doc="End moments per slope: EI/L₀ (4, 2, 4), with one hinge 3 EI/L₀ at the other end; less with springs.",
     )
     end_damping: Field[tuple[float, float, float]] = derived(
         "kN·m·s", shape=(3,), axes=("ss", "se", "ee"), doc="End moments per rate of slope, likewise."
@@ -204,6 +212,9 @@ class Rod(Handle):
         shape=(3,),
         axes=("ss", "se", "ee"),
         doc="Twice the strain of the axis per slopes: its share of bending.",
+    )
+    fixity: Field[Vector] = by_end(
+        doc="How firmly its ends are joined: 0 by a hinge, 1 rigidly, k/(k + 3 EI/L₀) by a spring."
     )
     turning_shares: Field[Vector] = by_end(
         doc="Weight of each end in its mean rotation, from which full turns are counted."

@@ -173,6 +173,9 @@ class Table(Generic[H]):
         else:
             raise AttributeError(missing(tr("columns of {table}", table=self.name), name, self.fields))
 
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.fields]
+
     def __repr__(self) -> str:
         few = ", ".join(self.names[:6]) if "name" in self.fields else ""
         return f"<{self.count} {self.name}{': ' + few if few else ''}{', …' if few and self.count > 6 else ''}>"

@@ -80,8 +80,9 @@ class Preview:
     """The element that a tool is about to make, or the state of a drag, drawn over the model.
 
     kind: "rod", "force", "distributed force", "moment", "velocity", "hinge", "roller", "pinned", "guided", "clamped",
-    "pull" or "box". start, end: points of the picture (m); of a box, two opposite corners; of a support, its point and
-    towards its ground. label: its value with its unit, or "". along: the ends of the rods that bear it.
+    "pull" or "box"; "": none. start, end: points of the picture (m); of a box, two opposite corners; of a support, its
+    point and towards its ground. label: its value with its unit, or "". along: the ends of the rods that bear it.
+    typed: what is typed of it at the pointer, or "". problem: why that was refused.
     """
 
     kind: str
@@ -89,6 +90,8 @@ class Preview:
     end: Vector
     label: str = ""
     along: tuple[tuple[Vector, Vector], ...] = ()
+    typed: str = ""
+    problem: str = ""
 
 
 @dataclass(frozen=True)
@@ -360,10 +363,11 @@ class View:
             self.fit(model)
 
     def shows(self, model: Model, share: float = 0.0) -> bool:
-        """True if all of the model lies in the room for it, above and below a share of the margin of a fit away."""
+        """True if all of the model lies in the room for it, a share of the margin of a fit away from its sides."""
         room, (x, y) = self.room, self.camera.to_pixels(drawn_places(model)).T
         margin = share * min(MARGIN * self.pixel_ratio, LEAST_MARGIN * room.height)
-        across = (x >= room.left) & (x <= room.right)
+        aside = share * min(MARGIN * self.pixel_ratio, LEAST_MARGIN * room.width)
+        across = (x >= room.left + aside) & (x <= room.right - aside)
         return bool((across & (y >= room.top + margin) & (y <= room.bottom - margin)).all())
 
     @property

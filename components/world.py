@@ -240,6 +240,12 @@ class World:
 
     def _checked(self, field: Field[Any], values: Any, count: int, where: Callable[[int], str]) -> Column:
         """Values as a column that the Field can take. Raises FieldError."""
+        if field.references is not None:
+            try:
+                values = self._as_rows(self.tables[field.references], values)
+            except LookupError as error:
+                reason = str(error.args[0])
+                raise FieldError("{where}: {reason}", where=where(0), reason=reason) from None
         column = field.check_column(values, count, where)
         if field.references is not None:
             there = self.tables[field.references].count
@@ -253,6 +259,16 @@ class World:
                     count=there,
                 )
         return column
+
+    def _as_rows(self, table: Table[Any], values: Any) -> Any:
+        """Names and handles among values as the rows of their elements in a table; rows as they are."""
+        if isinstance(values, str):
+            return table[values].row
+        if isinstance(values, Handle):
+            return self.row_of_entity.item(*self._ids([values]))
+        if isinstance(values, list | tuple) and values and not isinstance(values[0], int):
+            return type(values)(self._as_rows(table, value) for value in values)
+        return values
 
     def _check_names(self, table: Table[Any], names: Sequence[str], instead_of: Sequence[str] = ()) -> None:
         """Raise FieldError unless the names are not empty and, after a renaming, unique in the table."""
@@ -362,7 +378,7 @@ class World:
         for field in table.fields.values():
             if field.references is not None and field.name not in columns:
                 raise FieldError(
-                    "A new {noun} needs '{name}': rows of the {table}.",
+                    "A new {noun} needs '{name}': names, handles or rows of the {table}.",
                     noun=tr(kind.noun),
                     name=field.name,
                     table=tr(field.references),

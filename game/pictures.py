@@ -6,19 +6,19 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.camera import Camera, Rectangle, Viewport
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.slider import SliderStack
 from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import MARGIN, Plot, Status, View
 from pinjoint.documents import models
 from pinjoint.editor.view_model import exaggerate
-from pinjoint.session import Session
 from pinjoint.systems.render.backends.pdf import as_pdf
 from pinjoint.systems.render.backends.svg import as_svg
 from pinjoint.systems.render.labels.placing import Placed
@@ -27,9 +27,11 @@ from pinjoint.systems.render.picture import compose, compose_all
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.plots import draw_plot
 
+Session = Any  # pinjoint.session.Session, which draws itself by this module
 Size = tuple[int, int]
 Background = Literal["theme", "white", "transparent"]
 
+_IMAGES = ".png", ".jpg", ".bmp"
 _WHITE = (255, 255, 255, 255)
 _USUAL = 1280, 800  # pixels; in larger pictures type and lines grow
 
@@ -37,13 +39,21 @@ _USUAL = 1280, 800  # pixels; in larger pictures type and lines grow
 def render(
     session: Session, path: str | Path, size: Size, theme: str = "light", background: Background = "theme"
 ) -> None:
-    """Draw a session to a file in the format of its suffix, without a display. Raises OSError if it cannot be written."""
+    """Draw a session to a file in the format of its suffix, without a display. Raises OSError, ValueError."""
+    path = Path(path)
+    models.replace(path, drawn(session, path.suffix, size, theme, background))
+
+
+def drawn(
+    session: Session, suffix: str, size: Size, theme: str = "light", background: Background = "theme"
+) -> bytes:
+    """A session as the content of a file with that suffix."""
     exaggerate(session)
     session.update_view()
     view = on_paper(session.view, Camera(viewport=Viewport(0, 0, *size)))
     view.pixel_ratio = _pixel_ratio(size)
     view.fit(session.model)
-    write([(session.model, view)], path, size, theme, background)
+    return _made([(session.model, view)], suffix, size, theme, background)
 
 
 def _pixel_ratio(size: Size) -> float:
@@ -80,7 +90,14 @@ def write(
     background: Background = "theme",
 ) -> None:
     """Draw models in their views to a file in the format of its suffix, as a whole or not at all. Raises OSError."""
-    colours, path = load_theme(theme), Path(path)
+    path = Path(path)
+    models.replace(path, _made(stages, path.suffix, size, theme, background))
+
+
+def _made(
+    stages: Sequence[tuple[Model, View]], suffix: str, size: Size, theme: str, background: Background
+) -> bytes:
+    colours, suffix = load_theme(theme), suffix.lower()
     if background == "white":
         colours = replace(colours, background=_WHITE)
     pictures = compose_all(stages, colours)
@@ -90,14 +107,15 @@ def write(
     elif len(stages) > 1:  # which leave the place of the toolbar free
         pictures = [Picture(Viewport(0, 0, *size), colours.background), *pictures]
         paths = [paths[0], *paths]
-    title, suffix = stages[0][0].title or "Pinjoint", path.suffix.lower()
+    title = stages[0][0].title or "Pinjoint"
     if suffix == ".svg":
-        made = as_svg(list(zip(pictures, paths, strict=True)), size, title)
-    elif suffix == ".pdf":
-        made = as_pdf(pictures, size, title)
-    else:
-        made = _as_image(pictures, size, suffix, clear=background == "transparent")
-    models.replace(path, made)
+        return as_svg(list(zip(pictures, paths, strict=True)), size, title)
+    if suffix == ".pdf":
+        return as_pdf(pictures, size, title)
+    if suffix not in _IMAGES:
+        endings = ", ".join((*_IMAGES, ".svg", ".pdf"))
+        raise WrongValue("{file}: choose a file that ends with one of {endings}.", file=suffix, endings=endings)
+    return _as_image(pictures, size, suffix, clear=background == "transparent")
 
 
 def _as_image(pictures: Sequence[Picture], size: Size, suffix: str, *, clear: bool) -> bytes:

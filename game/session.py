@@ -21,6 +21,7 @@ from pinjoint.components.view import View, lesson_share
 from pinjoint.components.wording import missing
 from pinjoint.documents.format import ModelError, missing_mods
 from pinjoint.documents.open_documents import ModelFile
+from pinjoint.editor.actions.typing import takes_typing, type_with_tool
 from pinjoint.editor.frame import Actions, Exaggerate, Frame, ShowView
 from pinjoint.editor.readouts import readouts
 from pinjoint.editor.routing import Press
@@ -100,6 +101,23 @@ class Session(Headless):
         made = divide(self.model, [self.rods[rod] if isinstance(rod, str) else rod], parts)
         self.select(*made)
         return made
+
+    # --- pictures ------------------------------------------------------------------------------------
+
+    def picture(self, path: str | Path, size: tuple[int, int] = (1280, 800), theme: str = "light") -> None:
+        """Draw what is shown now to a .png, .svg, .pdf, .jpg or .bmp file; without bars and panels.
+
+        Raises ValueError for other files, OSError if it cannot be written.
+        """
+        from pinjoint.pictures import render
+
+        render(self, path, size, theme)
+
+    def _repr_png_(self) -> bytes:
+        """What a notebook shows of it."""
+        from pinjoint.pictures import drawn
+
+        return drawn(self, ".png", (960, 600))
 
     # --- scenes and actions --------------------------------------------------------------------------
 
@@ -287,6 +305,8 @@ class Session(Headless):
         self._record(TEXT + text, None)
         if self.course is not None and self.course.awaits_number and self.scene in LIVE:
             self.course.type(text)
+        elif takes_typing(self):
+            type_with_tool(self, text)
         else:
             self.scenes.active.type(self, text)
         self.scenes.apply(self)

@@ -197,7 +197,7 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     divided, structure = len(found.place) > model.particles.count, found.structure
     parts = None
     if divided and structure.bending is not None:
-        parts = Parts(structure.position, structure.ends, structure.bending.rigid)
+        parts = Parts(structure.position, structure.ends, structure.bending.fixity)
     return [
         _shape(
             model,

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pinjoint.components.field import Vector
 from pinjoint.components.view import Hit, Readout
+from pinjoint.editor.actions.typing import takes_typing, typed
 from pinjoint.editor.context import Context
+from pinjoint.systems.edit.typed import BEGINS
 from pinjoint.systems.input.actions import ACTIONS, FORMS, LIVE, MENU, TABLE
 from pinjoint.systems.render.picture import hits_at
 from pinjoint.systems.render.theme import load_theme
@@ -15,6 +17,7 @@ BUTTONS = ("click", "ctrl+click", "double click", "drag", "ctrl+drag", "right cl
 WHEEL = ("wheel up", "wheel down")
 _AT_POINTER = (*BUTTONS, *WHEEL)
 DIGITS = frozenset("0123456789.,-+")
+_OF_TYPED = {"return": "accept typed", "backspace": "erase typed", "escape": "leave typed"}
 
 
 class Press:
@@ -59,7 +62,7 @@ class Press:
     def _meaning(self) -> tuple[str | None, Vector]:
         """The action, if any, and where it acts."""
         view, key, pixel, hit = self._context.view, self._key, self._pixel, self.hit
-        if (answer := self._to_lesson()) is not None:
+        if (answer := self._to_lesson()) is not None or (answer := self._to_tool()) is not None:
             return answer or None, pixel
         if view.menu is not None and key in BUTTONS and pixel == view.menu.pointed:
             return "close menu", pixel  # the pointer has not moved: what came to lie under it is not meant
@@ -100,6 +103,16 @@ class Press:
         if once or dragged or (key == "right click" and not in_menu) or not hit.enabled:
             return None
         return hit.action or None
+
+    def _to_tool(self) -> str | None:
+        """The action for what is typed with a tool in hand; "": the key is part of the text; None: it is not for it."""
+        context, key = self._context, self._key
+        if not takes_typing(context):
+            return None
+        if typed(context) and key in _OF_TYPED:
+            return _OF_TYPED[key]
+        part = key in BEGINS or (typed(context) and (len(key) == 1 or key == "space"))
+        return "" if part else None
 
     def _to_lesson(self) -> str | None:
         """The action for the lesson that a person is in; "": it means nothing; None: it is not for it."""

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
+from decimal import DecimalException
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import written
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import Vector
+from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.language import begun, english, joined, listed, marked, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod
@@ -18,7 +20,7 @@ from pinjoint.components.tags import Hovered
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from pinjoint.editor.context import Context, Waiting
-from pinjoint.editor.gestures.drawing import DrawRod
+from pinjoint.editor.gestures.drawing import Drawing, DrawRod
 from pinjoint.editor.gestures.moving import Placing
 from pinjoint.editor.readouts import distance_at, pinned, readouts
 from pinjoint.editor.sliders import slider_stack
@@ -236,7 +238,15 @@ def _preview(context: Context) -> Preview | None:
     try:
         if context.gesture is None:
             return _end_pointed_at(context, context.view.pixel) if context.scene in LIVE else None
-        return context.gesture.preview(context, context.view.pixel)
+        gesture = context.gesture
+        if not (isinstance(gesture, Drawing) and gesture.typed):
+            return gesture.preview(context, context.view.pixel)
+        at = context.view.camera.to_model(context.view.pixel)
+        made = Preview("", at, at)  # while what is typed is no number yet, or none in such a unit
+        with suppress(DecimalException, FieldError):
+            made = gesture.preview(context, context.view.pixel) or made
+        unit = "" if any(map(str.isalpha, gesture.typed)) else "°" if "@" in gesture.typed else gesture.unit[1]
+        return replace(made, typed=f"{gesture.typed}| {unit}".rstrip(), problem=gesture.problem)
     except Refusal as error:
         context.gesture, context.notice = None, str(error)
         return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.util
 import io
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -57,6 +57,17 @@ class Results:
         column = self.columns[name]
         numbers = all(value is None or isinstance(value, float) for value in column)
         return np.array(column, dtype=float if numbers else None)
+
+    def __len__(self) -> int:
+        return len(self.columns["variant"])
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        """Each row, its values by column."""
+        return (dict(zip(self.columns, row, strict=True)) for row in zip(*self.columns.values(), strict=True))
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{count} {status}" for status, count in self.counts().items())
+        return f"<{len(self)} rows of a sweep ({counts}): {', '.join(self.columns)}>"
 
     def counts(self) -> dict[str, int]:
         """Number of variants that ended with each status."""

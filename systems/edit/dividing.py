@@ -29,6 +29,7 @@ DIVISIONS = {
 }  # titles of what menus offer, by the number of parts
 # Half a rod has half of the first and twice the others; sliders that move these move the first part only.
 _WITH_LENGTH, _AGAINST_LENGTH = ("prescribed_rest_length",), ("damping", "bending_damping")
+_OF_ENDS = "hinged", "end_springs"
 
 Numbers = NDArray[np.float64]
 
@@ -55,7 +56,7 @@ def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list
     """Divide a rod at places, as shares of its length from its start; returns its parts. Raises Refusal.
 
     The parts bend, weigh, bear and are damped as the rod did, which is the first of them now, and the state is that of
-    its curve. Hinges stay at its ends.
+    its curve. Hinges and springs stay at its ends.
     """
     name = model.describe(rod)
     if rod.bending_stiffness == 0.0:
@@ -77,9 +78,9 @@ def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list
         between = _particles(model, rod, shares)
         chain = [ends[0], *between, ends[1]]
         pairs = [(first.row, second.row) for first, second in itertools.pairwise(chain)]
-        hinged = np.zeros((last + 1, 2), dtype=bool)
-        hinged[0, 0], hinged[last, 1] = rod.hinged
-        columns = _columns(model, rod, lengths) | {"hinged": hinged}
+        columns = _columns(model, rod, lengths)
+        for name in _OF_ENDS:
+            columns[name][1:, 0] = columns[name][:-1, 1] = 0
         names = _names(model, rod, last + 1)
         for field, values in columns.items():
             model.assign([rod], field, values[:1])
@@ -100,7 +101,7 @@ def _columns(model: Model, rod: Rod, lengths: Numbers) -> dict[str, Any]:
     row, table = rod.row, model.rods
     columns = {}
     for field in table.fields_in(*SAVED):
-        if field.name in ("name", "between", "hinged"):
+        if field.name in ("name", "between"):
             continue
         values = np.repeat(table.storage(field.name)[row : row + 1], len(lengths), axis=0)
         if field.name in _WITH_LENGTH:

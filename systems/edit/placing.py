@@ -20,6 +20,7 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_point
 
 SNAP_REACH = 5.0  # points from a grid line
+SAME = 1e-9  # m between places that are one
 
 Points = NDArray[np.float64]
 
@@ -56,6 +57,15 @@ def place(model: Model, view: View, point: Vector) -> Particle:
     """A new particle at a point (m). Raises Refusal if one is there already."""
     check_free(model, view, point)
     return model.create(Particle, position=[point])[0]
+
+
+def particle_at(model: Model, point: Vector) -> Particle | None:
+    """The particle that is drawn at a point (m), whatever else is near it."""
+    if model.particles.count == 0:
+        return None
+    away = np.hypot(*(drawn_positions(model) - point).T)
+    nearest = int(np.argmin(away))
+    return model.particles[nearest] if away[nearest] <= SAME else None
 
 
 def check_free(model: Model, view: View, point: Vector, besides: list[Particle] | None = None) -> None:

@@ -115,19 +115,23 @@ def toggle_joint(model: Model, particle: Particle) -> str:
 
 def is_rigid(rod: Rod, end: int) -> bool:
     """True if a rod bends and is rigidly joined at that end."""
-    return rod.bending_stiffness > 0.0 and not rod.hinged[end]
+    return rod.fixity[end] == 1.0
 
 
 def set_rigid(model: Model, ends: Iterable[tuple[Rod, int]], rigid: bool, title: str) -> None:
-    """Make ends of rods rigid, or hinge them, as one edit; rods that did not bend are made of what new ones are."""
+    """Make ends of rods rigid, or hinge them, in place of springs, as one edit; rods that did not bend are made of what new
+    ones are."""
     hinged: dict[Rod, list[bool]] = {}
+    springs: dict[Rod, list[float]] = {}
     for rod, end in ends:
-        hinged.setdefault(rod, [not is_rigid(rod, other) for other in (0, 1)])[end] = not rigid
+        hinged.setdefault(rod, [rod.fixity[other] == 0.0 for other in (0, 1)])[end] = not rigid
+        springs.setdefault(rod, list(rod.end_springs))[end] = 0.0
     with model.transaction(title):
         pinned = [rod for rod in hinged if rigid and rod.bending_stiffness == 0.0]
         for name, value in _like_members(model).items() if pinned else ():
             model.assign(pinned, name, np.repeat(value, len(pinned)))
         model.assign(list(hinged), "hinged", list(hinged.values()))
+        model.assign(list(springs), "end_springs", list(springs.values()))
 
 
 def delete(model: Model, handles: Iterable[Handle]) -> None:

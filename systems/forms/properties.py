@@ -40,7 +40,7 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
         *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.density, Rod.thermal_expansion),
         *(Rod.tensile_strength, Rod.compressive_strength, Rod.tension_only),
     ),
-    marked("Supports and joints"): (Particle.fixed, Particle.fixed_rotation, Rod.hinged),
+    marked("Supports and joints"): (*(Particle.fixed, Particle.fixed_rotation, Rod.hinged, Rod.end_springs),),
     marked("Loads"): (
         *(Particle.force, Particle.moment, Particle.acceleration),
         *(Rod.distributed_force, Rod.temperature_change, Rod.temperature_gradient),
@@ -56,7 +56,8 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
     ),
 }
 _OF_BENDING = (  # what means nothing to rods that do not bend, and where none turns a particle
-    *(Rod.hinged, Rod.temperature_gradient, Rod.bending_damping, Load.moment, Particle.moment),
+    *(Rod.hinged, Rod.end_springs, Rod.temperature_gradient, Rod.bending_damping),
+    *(Load.moment, Particle.moment),
     *(Particle.rotation, Particle.angular_velocity, Particle.fixed_rotation, Particle.prescribed_inertia),
 )
 _NUMBERS = (float, int)

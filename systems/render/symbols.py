@@ -28,6 +28,7 @@ SUPPORT_DEPTH = 25.0  # points from the particle's rim to the far side of the gr
 RIM = 1.75  # points
 _HALF_WIDTH, _HEIGHT = 9.5, 16.0  # points, of a support's triangle
 _GROUND = 13.0  # points, half the length of the ground under it
+_COILED = 9.0  # units of STROKE, the radius of a coiled spring
 _SQUARE = 9.5  # points, half the side of a square around a joint that cannot turn
 
 
@@ -179,6 +180,14 @@ def _unturned(size: float, unit: float) -> Parts:
     return [("ink", outer), ("hollow", inner)]
 
 
+def _spiral(size: float, unit: float) -> Parts:
+    """A spring that resists turning: two and a half turns from the middle out."""
+    angle = np.linspace(0.0, 5.0 * np.pi, 41)
+    points = np.stack([np.cos(angle), np.sin(angle)], axis=1) * (_COILED * angle / angle[-1])[:, None]
+    ink = [("ink", part * size / _COILED) for part in _thick(points)]
+    return [("hollow", circle(size)), *ink]
+
+
 SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
     "ring": lambda radius, unit: [("ink", circle(radius)), ("hollow", circle(max(radius - RIM * unit, 0.0)))],
     "disc": lambda radius, unit: [("ink", circle(radius))],
@@ -188,6 +197,7 @@ SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
     "clamped": lambda size, unit: _ground(0.0, unit),
     "guided": _guided,
     "unturned": _unturned,
+    "spiral": _spiral,
 }
 
 

@@ -111,6 +111,10 @@ class Simulation:
         model.derive(Derivation(observed, self._sources(), lambda world: self.observe()))
         self.forget()  # a saved run goes on with the step size it had
 
+    def __repr__(self) -> str:
+        clock = self.model.clock
+        return f"<Simulation of {self.model!r}: t = {float(clock.time):.6g} s after {clock.steps} steps>"
+
     def _sources(self) -> tuple[str, ...]:
         """The columns that the derived ones follow from."""
         tables = ["clock", "particles", "rods", "loads", "span_loads", "environment", "settings"]

@@ -48,6 +48,7 @@ class Bending:
     end_stiffness: Array
     bowing: Array
     turning_shares: Array
+    fixity: Array
     initial_slopes: Array
     span_load: Array
 

@@ -288,7 +288,7 @@ def _work(structure: Structure, rods: Response, mode: Array, compression: Array)
 def members(model: Model) -> Rows:
     """The number of the member of each rod, (rods,): rods in a line, alike and rigidly joined where nothing else is."""
     rods, particles = model.rods, model.particles
-    ends, rigid = rods.between.astype(np.intp), rods.turning_shares > 0.0
+    ends, rigid = rods.between.astype(np.intp), rods.fixity == 1.0
     axis = rods.difference / np.maximum(rods.original_length, 1e-300)[:, None]
     joined = np.bincount(ends.ravel(), minlength=particles.count) == 2
     free = joined & ~particles.fixed.any(axis=1) & ~particles.fixed_rotation

@@ -10,6 +10,7 @@ By how much the releases open is found by virtual work:
 
     1 · δ = Σ n N L/EA + Σ ∫ m M dx/EI + Σ n ΔL + Σ ∫ m κ dx − Σ r c
 
+(springs at the ends of rods add Σ m M/k to ∫ m M dx/EI), where
 n, m and the reactions r are those of a unit force; N, M those of the load; ΔL and κ elongations and curvatures without
 force, by warmth and lack of fit; c displacements of supports. Exact: N is constant along a rod or, with what acts along it,
 counts by its mean; m is linear, and so is M but for what acts between the ends.
@@ -92,8 +93,9 @@ class SetState:
 class Terms:
     """The terms of the sums over axial forces or over bending moments, for m unknowns, in m or rad.
 
-    unit: n, (m, rods, 1), or m at both ends, (m, rods, 2). softness: L₀/EA or L₀/EI, 0 of bars (rods,). form: (1, 1) or
-    (2, 2), by which two units are multiplied. of_load: n N₀ L/EA or ∫ m M₀ dx/EI; of_free: n ΔL or ∫ m κ dx (m, rods).
+    unit: n, (m, rods, 1), or m at both ends, (m, rods, 2). softness: L₀/EA or L₀/EI, 0 of bars (rods,). form: by which two
+    units are multiplied, (rods, 1, 1) or (rods, 2, 2). of_load: n N₀ L/EA or ∫ m M₀ dx/EI; of_free: n ΔL or ∫ m κ dx
+    (m, rods).
     """
 
     unit: Array
@@ -104,14 +106,19 @@ class Terms:
 
     def of_units(self, i: int, j: int) -> Array:
         """n n' L/EA or ∫ m m' dx/EI of two unknowns (rods,)."""
-        terms: Array = self.softness * (self.unit[i] * (self.unit[j] @ self.form)).sum(axis=-1)
+        terms: Array = self.softness * (self.unit[i] * _product(self.form, self.unit[j])).sum(axis=-1)
         return terms
 
     @property
     def flexibility(self) -> Array:
         """Sums of these (m, m)."""
-        soft = self.softness[:, None] * (self.unit @ self.form)
+        soft = self.softness[:, None] * _product(self.form, self.unit)
         return np.tensordot(soft, self.unit, axes=([1, 2], [1, 2]))
+
+
+def _product(form: Array, unit: Array) -> Array:
+    """Symmetric matrices (rods, …) times vectors (…, rods, …)."""
+    return (form @ unit[..., None])[..., 0]
 
 
 @dataclass(frozen=True)
@@ -294,8 +301,10 @@ def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequ
     softness, turning = length / rods.stiffness, np.zeros(rods.count)
     np.divide(length, rods.bending_stiffness, out=turning, where=bends)
     curvature = -rods.thermal_expansion * rods.temperature_gradient * bends
-    linear = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0  # ∫ m M dξ by the values at both ends
-    straight = (m * (base.bending_moment @ linear)).sum(axis=2)
+    # ∫ m M dξ by the values at both ends, and what springs there add: EI/(k L₀) m M.
+    sprung = np.where(rods.fixity > 0.0, rods.fixity, 1.0)
+    linear = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0 + (1.0 / sprung - 1.0)[:, None] / 3.0 * np.eye(2)
+    straight = (m * _product(linear, base.bending_moment)).sum(axis=2)
     moved = np.where(
         np.column_stack([model.particles.fixed, model.particles.fixed_rotation]), _places(model), 0.0
     )
@@ -305,7 +314,13 @@ def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequ
     settled = np.argwhere(moved != 0.0)
     reactions = np.array([unit.reaction for unit in units]).reshape(count, len(moved), 3)[:, *settled.T]
     return Work(
-        Terms(n, softness, np.eye(1), n[:, :, 0] * base.axial_force * softness, n[:, :, 0] * _free(model)),
+        Terms(
+            n,
+            softness,
+            np.ones((rods.count, 1, 1)),
+            n[:, :, 0] * base.axial_force * softness,
+            n[:, :, 0] * _free(model),
+        ),
         Terms(
             m,
             turning,

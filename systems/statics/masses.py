@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pinjoint.components.derived import by_hinges, by_rigid_ends, cubic
+from pinjoint.components.derived import by_fixity, cubic, on_joints, own_slopes
 from pinjoint.components.model import Model
 from pinjoint.components.spans import Kinks
 from pinjoint.systems.statics.assembly import Matrix
@@ -57,15 +57,14 @@ class Divided:
         ends[first, 0], ends[last, 1] = whole.ends[:, 0], whole.ends[:, 1]
         inner = row[~first], (number / parts[row])[~first]
         length = (rods.rest_length / parts)[row]
-        hinged = rods.hinged[row] & np.stack([first, last], axis=1)
-        rigid = ~hinged & (rods.bending_stiffness > 0.0)[row, None]
-        per_slope, of_ends = by_hinges(rigid, length)
+        inside, outer = (rods.bending_stiffness > 0.0)[row, None], np.stack([first, last], axis=1)
+        per_slope, of_ends = by_fixity(np.where(outer, _of_parts(rods.fixity[row], parts[row]), inside))
         between = Kinks.of(model).divided(row, number / parts[row], (number + 1) / parts[row])
         bending = Bending(
             rest_length=length,
             end_stiffness=(rods.bending_stiffness[row] / length)[:, None] * per_slope,
             initial_slopes=rods.initial_slopes[row] / parts[row, None],
-            span_load=by_rigid_ends(between.on_clamped(length), rigid),
+            span_load=on_joints(between.on_clamped(length), of_ends["fixity"]),
             **of_ends,
         )
         between = particles.position[whole.ends[inner[0], 0]] + inner[1][:, None] * rods.difference[inner[0]]
@@ -97,8 +96,7 @@ class Divided:
         place = whole.field(state.displacement, state.rotation)
         held = whole.respond(place, state.plastic_strain, factor)
         assert held.bent is not None
-        rigid, slopes = whole.bending.rigid, held.bent.slopes
-        slopes = np.where(rigid, slopes, np.where(rigid[:, ::-1], -0.5 * slopes[:, ::-1], 0.0))
+        slopes = np.einsum("rij,rj->ri", own_slopes(whole.bending.fixity), held.bent.slopes)
         bow = cubic(*slopes.T)[row]
         powers = share[:, None] ** np.arange(4)
         aside = (bow * powers).sum(axis=1) * held.length[row]
@@ -118,21 +116,19 @@ class Divided:
     def inertia(self, axis: Array) -> Matrix:
         """The mass matrix (Mg, Mg·m²), its rods with these axes: of their cubics, and of particles.
 
-        A hinged end turns so that no moment acts on it.
+        An end turns as its joint, hinge or spring lets it.
         """
         structure, bending = self.structure, self.structure.bending
         assert bending is not None
-        length, rigid = bending.rest_length, bending.rigid
+        length, own = bending.rest_length, own_slopes(bending.fixity)
         one = np.ones_like(length)
         way = np.zeros((len(length), 6, 6))  # along, to the left, turning, of both ends
         for end in (0, 3):
             way[:, end, end : end + 2] = axis
             way[:, end + 1, end], way[:, end + 1, end + 1] = -axis[:, 1], axis[:, 0]
             way[:, end + 2, end + 2] = 1.0
-        for end, other in ((0, 1), (1, 0)):
-            loose = ~rigid[:, end]
-            chord = (way[loose, 4] - way[loose, 1]) / length[loose, None]
-            way[loose, 3 * end + 2] = 1.5 * chord - 0.5 * way[loose, 3 * other + 2]
+        chord = (way[:, 4] - way[:, 1])[:, None] / length[:, None, None]
+        way[:, 2::3] = chord + own @ (way[:, 2::3] - chord)
         rows = [
             [140.0, 0.0, 0.0, 70.0, 0.0, 0.0],
             [0.0, 156.0, 22.0, 0.0, 54.0, -13.0],
@@ -159,6 +155,11 @@ def _bending(model: Model) -> Structure:
         fixed = np.column_stack([found.fixed, model.particles.fixed_rotation])
         found = replace(found, bending=Bending.of(model, bows=True), fixed=fixed)
     return found.with_translations()
+
+
+def _of_parts(fixity: Array, parts: Rows) -> Array:
+    """Fixities of the same springs at parts of rods, so many of each, (n, 2): k/(k + 3 EI n/L₀)."""
+    return fixity / (fixity + (1.0 - fixity) * parts[:, None])
 
 
 def _points(model: Model, heavy: Flags) -> Array:

@@ -3,6 +3,7 @@
 import copy
 import pickle
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -177,8 +178,22 @@ def test_what_no_script_can_mean_is_refused() -> None:
         session.document.assessment.comparison().worst("simulated")
     with pytest.raises(ValueError, match="5 is not a model; give a file"):
         Session.open(5)  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="rod AB: ends x is 'A'; it must be the row of an element"):
-        session.rods["AB"].between = ("A", "C")  # type: ignore[assignment]
+    with pytest.raises(ValueError, match="rod AB: There is no 'Q' among the particles"):
+        session.rods["AB"].between = ("Q", "C")  # type: ignore[assignment]
+
+
+def test_a_script_sees_what_there_is(session: Session, tmp_path: Path) -> None:
+    assert {"stiffness", "count", "column"} <= set(dir(session.rods))
+    assert repr(session.model).startswith("<Model 'Isostatic triangle': 3 particles, 3 rods, ")
+    assert "theory='first-order'" in repr(session.settings)
+    assert "t = 0 s after 0 steps" in repr(session.simulation)
+    begins = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
+    for suffix, begin in begins.items():
+        session.picture(tmp_path / f"x{suffix}")
+        assert (tmp_path / f"x{suffix}").read_bytes().startswith(begin)
+    assert session._repr_png_().startswith(begins[".png"])
+    with pytest.raises(ValueError, match=r"\.xyz: choose a file that ends with one of \.png"):
+        session.picture(tmp_path / "x.xyz")
 
 
 def test_a_window_of_another_size_shows_the_whole_model_until_somebody_looks_closer(session: Session) -> None:

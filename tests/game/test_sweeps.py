@@ -140,6 +140,13 @@ def test_variants_leave_nothing_behind(name: str) -> None:
     assert list(compute(plan, range(plan.size)[::-1])) == alone[::-1]
 
 
+def test_results_have_rows() -> None:
+    found = sweep("isostatic", {"rods.CA.stiffness": [1e5, 2e5]}, ["rods.AB.axial_force"])
+    assert len(found) == 2
+    assert [row["rods.CA.stiffness"] for row in found] == [1e5, 2e5]
+    assert "2 at rest" in repr(found)
+
+
 def test_ranges_lists_and_values_from_python() -> None:
     def taken(vary: Any) -> list[Any]:
         return sweep(MODEL, vary, ["residual"], STATIC).columns[STIFFNESS]

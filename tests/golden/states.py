@@ -192,13 +192,22 @@ def _lesson(window: Window) -> Session:
     return session
 
 
-def _drawn(key: str, *points: tuple[float, float], source: object = "hyperstatic") -> Scene:
-    """A tool in hand, and what it is about to draw."""
+def _drawn(
+    key: str,
+    *points: tuple[float, float],
+    source: object = "hyperstatic",
+    typed: str = "",
+    accept: bool = False,
+) -> Scene:
+    """A tool in hand, and what it is about to draw; typed: what is typed of it, and perhaps refused."""
 
     def scene(window: Window) -> Session:
         session = opened(window, source)
         session.press(key, session.point(*points[0]))
         session.point(*points[1])
+        session.type(typed)
+        if accept:
+            session.press("return")
         return session
 
     return scene
@@ -284,6 +293,8 @@ STATES: dict[str, Scene] = {
     "cables": lambda window: pressed(window, "e", source="hanging_net"),
     "lesson": _lesson,
     "drawing-a-rod": _drawn("l", (0.0, 0.0), (1.2, 0.3)),
+    "typing-a-rod": _drawn("l", (0.0, 0.0), (1.2, 0.3), typed="1.5 m@30"),
+    "typing-a-load-refused": _drawn("f", (0.0, 1.5), (0.9, 1.9), typed="20 kN/m", accept=True),
     "drawing-a-velocity": _drawn("v", (0.0, 1.5), (0.9, 1.9)),
     "pulling": _pulled,
     "selecting": _boxed,

@@ -125,6 +125,7 @@ class Hostile:
             "second_moment": self.number(1e-5, above=True),
             "youngs_modulus": self.number(2e8, above=True),
             "hinged": [self.random.random() < 0.3, self.random.random() < 0.3],
+            "end_springs": [self.random.choice([0.0, 0.0, 500.0]), self.random.choice([0.0, 0.0, 0.0, 1e6])],
             "distributed_force": self.pair(1.0, -5.0),
             "temperature_gradient": self.number(20.0),
             "bending_damping": abs(self.number(0.1)),

@@ -79,6 +79,7 @@ EDITS: dict[str, Edit] = {
     "rod": _new_rod,
     "no rod": lambda s, lot, at, rod: s.model.delete([rod]) if lot.random() < 0.3 else None,
     "stiffness": lambda s, lot, at, rod: setattr(rod, "stiffness", rod.stiffness * lot.uniform(0.5, 2.0)),
+    "spring": lambda s, lot, at, rod: setattr(rod, "end_springs", (0.0, float(lot.uniform(50.0, 5000.0)))),
     "hinge": lambda s, lot, at, rod: setattr(rod, "hinged", (lot.random() < 0.3, lot.random() < 0.3)),
     "along": lambda s, lot, at, rod: setattr(rod, "distributed_force", (0.0, lot.uniform(-20.0, 5.0))),
     "warmth": lambda s, lot, at, rod: setattr(rod, "temperature_change", lot.uniform(-20.0, 40.0)),
@@ -222,7 +223,8 @@ def _plain(model: Model, factor: float) -> dict[str, Any]:
     members = [
         {name: float(getattr(rods, name)[row]) for name in (*names, "temperature_gradient")}
         | {"name": str(row), "between": [str(end) for end in rods.between[row].tolist()]}
-        | {"hinged": rods.hinged[row].tolist(), "distributed_force": factor * rods.distributed_force[row]}
+        | {"hinged": rods.hinged[row].tolist(), "end_springs": rods.end_springs[row].tolist()}
+        | {"distributed_force": factor * rods.distributed_force[row]}
         for row in range(rods.count)
     ]
     return {"particles": joints, "rods": members}

@@ -17,19 +17,22 @@ EXPANSION = 1.2e-5
 
 @dataclass(frozen=True)
 class Member:
-    """One rod in local axes: forces on its ends = stiffness × displacements of them + fixed, each (x, y, θ) twice."""
+    """One rod in local axes: forces on its ends = stiffness × displacements of them + fixed, each (x, y, θ) twice.
+
+    springs: of ends that turn otherwise than their joints, by their places, with the stiffness between; 0 of hinges.
+    """
 
     places: list[int]
     turned: np.ndarray
     stiffness: np.ndarray
     fixed: np.ndarray
-    hinged: list[int]
+    springs: dict[int, float]
     length: float
     load: tuple[float, float]  # along and across, per present length
 
 
 def member(rod: Document, places: list[int], span: np.ndarray) -> Member:
-    """The matrices of a rod as if it were rigid at both ends; those that are not are in `hinged`."""
+    """The matrices of a rod as if it were rigid at both ends; those that are not are in `springs`."""
     length = float(np.hypot(*span))
     cosine, sine = span / length
     rest = rod.get("rest_length", length)
@@ -68,24 +71,33 @@ def member(rod: Document, places: list[int], span: np.ndarray) -> Member:
         ]
     )
     bars = bend == 0.0
-    hinged = [2 + 3 * end for end, hinge in enumerate(rod.get("hinged", (False, False))) if hinge or bars]
+    hinged, given = rod.get("hinged", (False, False)), rod.get("end_springs", (0.0, 0.0))
+    springs = {2 + 3 * end: given[end] * (not bars) for end in (0, 1) if hinged[end] or given[end] or bars}
     if bars:  # simple beams
         fixed[[1, 4]] += np.array([1.0, -1.0]) * (fixed[2] + fixed[5]) / -length
         fixed[[2, 5]] = 0.0
-    return Member(places, turned, stiffness, fixed, hinged, length, (along, across))
+    return Member(places, turned, stiffness, fixed, springs, length, (along, across))
+
+
+def with_own_turns(of: Member) -> tuple[np.ndarray, np.ndarray]:
+    """Stiffness and fixed-end forces with the ends' own rotations, after the six coordinates of the joints."""
+    places = list(range(6))
+    for number, end in enumerate(of.springs):
+        places[end] = 6 + number
+    size = 6 + len(of.springs)
+    stiffness, fixed = np.zeros((size, size)), np.zeros(size)
+    stiffness[np.ix_(places, places)], fixed[places] = of.stiffness, of.fixed
+    for end, spring in of.springs.items():
+        both = [end, places[end]]
+        stiffness[np.ix_(both, both)] += spring * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    return stiffness, fixed
 
 
 def condensed(of: Member) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffness and fixed-end forces without the rotations of hinged ends, whose rows and columns are 0."""
-    kept = [i for i in range(6) if i not in of.hinged]
-    stiffness, fixed = np.zeros((6, 6)), np.zeros(6)
-    inner = of.stiffness[np.ix_(of.hinged, of.hinged)]
-    cross = of.stiffness[np.ix_(kept, of.hinged)] @ np.linalg.pinv(inner)
-    stiffness[np.ix_(kept, kept)] = (
-        of.stiffness[np.ix_(kept, kept)] - cross @ of.stiffness[np.ix_(of.hinged, kept)]
-    )
-    fixed[kept] = of.fixed[kept] - cross @ of.fixed[of.hinged]
-    return stiffness, fixed
+    """Stiffness and fixed-end forces on the joints, without the ends' own rotations."""
+    stiffness, fixed = with_own_turns(of)
+    inner = stiffness[:6, 6:] @ np.linalg.pinv(stiffness[6:, 6:])
+    return stiffness[:6, :6] - inner @ stiffness[6:, :6], fixed[:6] - inner @ fixed[6:]
 
 
 @dataclass(frozen=True)
@@ -122,7 +134,7 @@ def assembled(document: Document) -> tuple[np.ndarray, np.ndarray, np.ndarray, n
     held = np.array(
         [[*p.get("fixed", (False, False)), p.get("fixed_rotation", False)] for p in particles]
     ).ravel()
-    rigid = {place for of in members for end in (2, 5) if end not in of.hinged for place in [of.places[end]]}
+    rigid = {of.places[end] for of in members for end in (2, 5) if of.springs.get(end, 1.0)}
     still = np.array([i % 3 == 2 and i not in rigid for i in range(size)])
     return matrix, load + applied, held, still, members
 
@@ -153,21 +165,20 @@ def solve(document: Document) -> Found:
 def end_forces(of: Member, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Forces of the particles on the ends of a rod in its axes, (6,), and the rotations of its ends, (2,)."""
     local = of.turned @ moved[of.places]
-    kept = [i for i in range(6) if i not in of.hinged]
-    if of.hinged and of.stiffness[2, 2] > 0.0:
-        inner = of.stiffness[np.ix_(of.hinged, of.hinged)]
-        pushed = of.fixed[of.hinged] + of.stiffness[np.ix_(of.hinged, kept)] @ local[kept]
-        local[of.hinged] = -np.linalg.solve(inner, pushed)
-    elif of.hinged:
-        local[of.hinged] = (local[4] - local[1]) / of.length
+    if of.stiffness[2, 2] > 0.0:
+        stiffness, fixed = with_own_turns(of)
+        pushed = fixed[6:] + stiffness[6:, :6] @ local
+        local[list(of.springs)] = -np.linalg.solve(stiffness[6:, 6:], pushed)
+    else:
+        local[[2, 5]] = (local[4] - local[1]) / of.length
     return of.stiffness @ local + of.fixed, local[[2, 5]]
 
 
 def natural_frequencies(document: Document, parts: int) -> np.ndarray:
     """ω² (rad²/s²), ascending, of a frame whose rods that bend are divided so, with consistent masses.
 
-    A hinged end has a rotation of its own. Bars have halves of their masses at their ends, in place of which a mass may be
-    prescribed.
+    An end with a hinge or spring has a rotation of its own. Bars have halves of their masses at their ends, in place of
+    which a mass may be prescribed.
     """
     particles, rods = document["particles"], document["rods"]
     row = {particle["name"]: i for i, particle in enumerate(particles)}
@@ -183,10 +194,17 @@ def natural_frequencies(document: Document, parts: int) -> np.ndarray:
         used += 3 * (count - 1)
         chain = [list(range(3 * first, 3 * first + 3)), *inner, list(range(3 * last, 3 * last + 3))]
         for end in (0, -1):
-            if bends and rod.get("hinged", (False, False))[end]:
+            spring = rod.get("end_springs", (0.0, 0.0))[end]
+            if bends and (spring or rod.get("hinged", (False, False))[end]):
+                both = [chain[end][2], used]
+                stiffness[np.ix_(both, both)] += spring * np.array([[1.0, -1.0], [-1.0, 1.0]])
                 chain[end][2], used = used, used + 1
         for start, end in pairwise(chain):
-            of = member({k: v for k, v in rod.items() if k != "rest_length"}, [*start, *end], span / count)
+            of = member(
+                {k: v for k, v in rod.items() if k not in ("rest_length", "end_springs")},
+                [*start, *end],
+                span / count,
+            )
             matrix = of.turned.T @ of.stiffness @ of.turned
             stiffness[np.ix_(of.places, of.places)] += matrix
             weight = rod.get("density", 6.15) * of.length / 1000.0
@@ -202,10 +220,11 @@ def natural_frequencies(document: Document, parts: int) -> np.ndarray:
         for place in (3 * row[name], 3 * row[name] + 1):
             mass[place, place] = weight + sum(of[place, place] for of in along)
     held = [[*p.get("fixed", (False, False)), p.get("fixed_rotation", False)] for p in particles]
-    free = np.pad(~np.array(held).ravel(), (0, size - 3 * len(particles)), constant_values=True) & (
-        np.diag(mass) > 0.0
-    )
-    found: np.ndarray = eigh(stiffness[np.ix_(free, free)], mass[np.ix_(free, free)], eigvals_only=True)
+    free = np.pad(~np.array(held).ravel(), (0, size - 3 * len(particles)), constant_values=True)
+    heavy, light = free & (np.diag(mass) > 0.0), free & (np.diag(mass) == 0.0)
+    inner = stiffness[np.ix_(heavy, light)] @ np.linalg.pinv(stiffness[np.ix_(light, light)])
+    left = stiffness[np.ix_(heavy, heavy)] - inner @ stiffness[np.ix_(light, heavy)]
+    found: np.ndarray = eigh(left, mass[np.ix_(heavy, heavy)], eigvals_only=True)
     return found
 
 

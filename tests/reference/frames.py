@@ -16,20 +16,26 @@ from pinjoint.components.model import Model
 STEP = 1e-30
 
 
-def stiffness_of(hinged: tuple[bool, bool], bent: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[int]]:
-    """K/(EI/L₀), bowing, what slopes add to the area below the axis (per L₀²), and the rigid ends."""
-    if not bent or all(hinged):
-        return np.zeros((2, 2)), np.zeros((2, 2)), np.zeros(2), []
-    if hinged[0]:
-        return np.diag([0.0, 3.0]), np.diag([0.0, 0.2]), np.array([0.0, -1 / 8]), [1]
-    if hinged[1]:
-        return np.diag([3.0, 0.0]), np.diag([0.2, 0.0]), np.array([1 / 8, 0.0]), [0]
-    return (
-        np.array([[4.0, 2.0], [2.0, 4.0]]),
-        np.array([[4.0, -1.0], [-1.0, 4.0]]) / 30,
-        np.array([1 / 12, -1 / 12]),
-        [0, 1],
-    )
+def stiffness_of(
+    hinged: tuple[bool, bool], bent: bool, springs: tuple[float, float] = (0.0, 0.0)
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[int]]:
+    """K/(EI/L₀), bowing, what slopes add to the area below the axis (per L₀²), and the ends that joints turn.
+
+    springs: per EI/L₀. Ends that turn freely or by springs are where these and the rod have the least energy.
+    """
+    rod = np.array([[4.0, 2.0], [2.0, 4.0]])
+    held = [end for end in (0, 1) if bent and (springs[end] or not hinged[end])]
+    own = np.zeros((2, 2))
+    if held:
+        loose = [end for end in (0, 1) if springs[end] or hinged[end]]
+        firm = [end for end in (0, 1) if end not in loose]
+        own[firm, firm] = 1.0
+        given = np.diag(springs)[loose] - rod[np.ix_(loose, firm)] @ np.eye(2)[firm]
+        own[loose] = np.linalg.solve(rod[np.ix_(loose, loose)] + np.diag(springs)[np.ix_(loose, loose)], given)
+    bowing = np.array([[4.0, -1.0], [-1.0, 4.0]]) / 30
+    turned = np.diag([float(end in held) for end in (0, 1)]) - own
+    stiffness = own.T @ rod @ own + turned.T @ np.diag(springs) @ turned
+    return stiffness, own.T @ bowing @ own, own.T @ np.array([1 / 12, -1 / 12]), held
 
 
 def angle(sine: Any, cosine: Any) -> Any:
@@ -50,7 +56,11 @@ def rod_energy(model: Model, row: int, shift: Any, turns: Any) -> Any:
     rest, original = rod.rest_length, rod.original_length
     elongation = ((dx + x) * shift[0] + (dy + y) * shift[1]) / (length + original) + original - rest
     elongation -= rest * (rod.thermal_expansion * rod.temperature_change + rod.plastic_strain)
-    stiffness, bowing, area, rigid = stiffness_of(rod.hinged, rod.bending_stiffness > 0.0)
+    stiffness, bowing, area, rigid = stiffness_of(
+        rod.hinged,
+        rod.bending_stiffness > 0.0,
+        tuple(k * rest / (rod.bending_stiffness or 1.0) for k in rod.end_springs),
+    )
     chord = angle(dx * shift[1] - dy * shift[0], dx * x + dy * y)
     mean = sum(turns[end].real for end in rigid) / len(rigid) if rigid else 0.0
     chord += 2 * math.pi * round((mean - chord.real) / (2 * math.pi))
@@ -87,9 +97,9 @@ def forces(model: Model) -> tuple[np.ndarray, np.ndarray]:
 
 
 def random_frame(
-    lot: np.random.Generator, count: int = 5, *, loaded: bool = True, warm: bool = True
+    lot: np.random.Generator, count: int = 5, *, loaded: bool = True, warm: bool = True, sprung: bool = True
 ) -> dict[str, Any]:
-    """A frame of so many particles in any state, with hinges, bars, distributed forces and warm sides."""
+    """A frame of so many particles in any state, with hinges, springs, bars, distributed forces and warm sides."""
     angles = np.sort(lot.uniform(0.0, 2.0 * math.pi, count))
     position = np.column_stack([np.cos(angles), np.sin(angles)]) * lot.uniform(1.0, 3.0, (count, 1))
     turned = float(lot.uniform(-9.0, 9.0))
@@ -123,6 +133,8 @@ def random_frame(
             if warm:
                 facts["temperature_gradient"] = float(lot.normal(0.0, 1000.0))
             rods.append(facts)
+    for facts in rods if sprung else ():
+        facts["end_springs"] = (10 ** lot.uniform(0, 2, 2) * (lot.random(2) < 0.25)).tolist()
     rods[0] |= {"bending_stiffness": 10.0, "hinged": [False, False]}
     return {"format": "pinjoint model", "version": 1, "particles": particles, "rods": rods}
 

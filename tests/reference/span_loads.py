@@ -50,12 +50,12 @@ def divided(document: Document, stiff: float = 1e3) -> tuple[Document, dict[str,
                 if low <= start and end <= high:
                     at += [values[0] + (x - low) / (high - low) * (values[1] - values[0]) for x in (start, end)]
             part = rod | {"name": f"{rod['name']} {i}", "between": names[i : i + 2]}
-            part["hinged"] = [
-                bool(rod.get("hinged", (0, 0))[0]) and i == 0,
-                bool(rod.get("hinged", (0, 0))[1]) and end == length,
-            ]
-            if rod.get("bending_stiffness", 0.0) == 0.0 and len(cuts) > 2:
-                part |= {"bending_stiffness": stiff, "hinged": [i == 0, end == length]}
+            outer = (i == 0, end == length)
+            bar = len(cuts) > 2 and rod.get("bending_stiffness", 0.0) == 0.0
+            part["hinged"] = [a and (b or bar) for a, b in zip(outer, rod.get("hinged", (0, 0)), strict=True)]
+            springs = zip(outer, rod.get("end_springs", (0.0, 0.0)), strict=True)
+            part["end_springs"] = [spring * (at_joint and not bar) for at_joint, spring in springs]
+            part |= {"bending_stiffness": stiff} if bar else {}
             part["distributed_force"] = (np.array(rod.get("distributed_force", (0.0, 0.0))) + at[0]).tolist()
             part["more_at_end"] = (at[1] - at[0]).tolist()
             made["rods"].append(part)

@@ -112,7 +112,7 @@ def test_a_value_is_normalised(field: Field[Any], value: Any, expected: Any) -> 
         (
             number(dtype="reference"),
             "A",
-            "rod AB: push is 'A'; it must be the row of an element, such as its .row.",
+            "rod AB: push is 'A'; it must be an element, its name or its row.",
         ),
     ],
 )

@@ -131,9 +131,9 @@ def test_what_there_is_one_of_is_neither_created_nor_deleted() -> None:
             {"between": [(0, 3)]},
             "rod 1: its ends are at the same place; move one of them or give it a rest",
         ),
-        (Rod, {}, "A new rod needs 'between': rows of the particles."),
+        (Rod, {}, "A new rod needs 'between': names, handles or rows of the particles."),
         (Load, {"on": [9]}, "load 1: particle is row 9 of the particles, but there are only 4"),
-        (Load, {"force": [(1, 1)]}, "A new load needs 'on': rows of the particles."),
+        (Load, {"force": [(1, 1)]}, "A new load needs 'on': names, handles or rows of the particles."),
         (
             Load,
             {"on": [0], "history": [{"kind": "x"}]},
@@ -167,8 +167,8 @@ def test_a_creation_refused_leaves_nothing_behind(kind: Any, columns: dict[str, 
         (
             "rods.AB",
             "between",
-            ("A", "C"),
-            "rod AB: ends x is 'A'; it must be the row of an element, such as its .row.",
+            ("A", "Q"),
+            "rod AB: There is no 'Q' among the particles; choose one of A, B, C",
         ),
         ("particles.A", "position", (1, 1), "particle A: at this position rod AB would have no length"),
         ("particles.C", "position", (1, 1), "particle C: at this position rod BC would have no length"),
@@ -212,6 +212,19 @@ def test_creation_takes_columns_overrides_and_defaults() -> None:
     [rod] = model.create(Rod, between=[(0, 1)], rest_length=0.5, name="AB")
     assert (rod.rest_length, rod.original_length, rod.name) == (0.5, 1.0, "AB")
     assert model.create(Particle, 0) == []
+
+
+def test_elements_are_referred_to_by_name_handle_or_row() -> None:
+    model = triangle()
+    one, other = model.create(Particle, 2, name=["D", "E"], position=[(5, 0), (6, 0)])
+    first, second = model.create(Rod, 2, between=[("A", one), (one, other.row)])
+    assert [first.between, second.between] == [(0, 3), (3, 4)]
+    first.between = ("B", "E")
+    assert first.between == (1, 4)
+    [load] = model.create(Load, on="E", force=(0, -1))
+    assert load.particle.name == "E"
+    with pytest.raises(FieldError, match="belongs to another model"):
+        first.between = (triangle().particles["A"], "B")
 
 
 def chessboard(side: int) -> tuple[Model, NDArray[np.intp]]:

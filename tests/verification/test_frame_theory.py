@@ -26,7 +26,7 @@ EI, EA = 4000.0, 8e5
 
 
 def random_frame(seed: int, *, moves: bool = True) -> dict[str, Any]:
-    """A frame of storeys and bays with braces, hinges, warm members, loads everywhere, and moved supports and clamps."""
+    """A frame of storeys and bays with braces, hinges, springs, warm members, loads and moved supports and clamps."""
     lot = np.random.default_rng(seed)
     bays, storeys = int(lot.integers(1, 4)), int(lot.integers(1, 4))
     particles: list[dict[str, Any]] = []
@@ -60,6 +60,8 @@ def random_frame(seed: int, *, moves: bool = True) -> dict[str, Any]:
             if floor and bay:
                 join(f"P{floor}{bay - 1}", f"P{floor}{bay}", bends=True)
                 join(f"P{floor - 1}{bay - 1}", f"P{floor}{bay}", bends=False)
+    for facts in rods:
+        facts["end_springs"] = (10.0 ** lot.uniform(2.0, 4.0, 2) * (lot.random(2) < 0.2)).tolist()
     return model(particles, rods)
 
 
@@ -144,6 +146,27 @@ def test_a_simply_supported_beam_with_a_moment_in_the_span() -> None:
     assert found.diagrams["end_rotation"][0] == pytest.approx(
         np.array([-1.0, 1.0]) * load * length**3 / (24.0 * EI), rel=1e-12
     )
+
+
+def test_a_beam_whose_ends_springs_hold() -> None:
+    """M = qL²/12 / (1 + 2EI/kL); the ends turn by M/k. With one clamp, by the method of forces."""
+    length, load, spring = 6.0, -8.0, 900.0
+    full, soft = load * length**2 / 12.0, EI / (spring * length)
+    made, found = answered(
+        [held("A", 0, fixed_rotation=True), held("B", length, fixed_rotation=True)],
+        [beam("AB", end_springs=[spring, spring], distributed_force=[0.0, load])],
+    )
+    moment = full / (1.0 + 2.0 * soft)
+    assert made.rods.fixity == pytest.approx(1.0 / (1.0 + 3.0 * soft))
+    assert found.diagrams["bending_moment"][0] == pytest.approx([moment, moment], rel=1e-12)
+    assert found.diagrams["end_rotation"][0] == pytest.approx([moment / spring, -moment / spring], rel=1e-12)
+    found = answered(
+        [held("A", 0, fixed_rotation=True), held("B", length, fixed_rotation=True)],
+        [beam("AB", end_springs=[0.0, spring], distributed_force=[0.0, load])],
+    )[1]
+    far = full / (1.0 + 4.0 * soft)
+    assert found.diagrams["bending_moment"][0, 1] == pytest.approx(far, rel=1e-12)
+    assert found.diagrams["bending_moment"][0, 0] == pytest.approx(1.5 * full - 0.5 * far, rel=1e-12)
 
 
 def test_a_three_hinged_arch() -> None:

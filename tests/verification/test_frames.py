@@ -44,7 +44,7 @@ def test_inertia_of_rotations_spoils_neither_the_first_mode_nor_the_step(
 def test_the_highest_frequency_is_bounded(number: int) -> None:
     """In any state, against the Hessian of the energy by differences, of rods without distributed forces."""
     lot = np.random.default_rng([31, number])
-    made = parse(frames.random_frame(lot, 4, loaded=False, warm=False))
+    made = parse(frames.random_frame(lot, 4, loaded=False, warm=False, sprung=False))
     state = np.column_stack([made.particles.displacement, made.particles.rotation])
     mobility = np.column_stack([made.particles.mobility, made.particles.turning])
     session = Session(made)

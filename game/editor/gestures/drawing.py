@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from decimal import DecimalException
 from typing import Any, ClassVar
 
 from pinjoint.components import written
-from pinjoint.components.field import Vector
+from pinjoint.components.field import CM, Field, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.load import SpanLoad
+from pinjoint.components.mistake import Mistake
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
 from pinjoint.components.tags import Selected
-from pinjoint.components.view import BETWEEN, Preview, drawn_positions
+from pinjoint.components.view import BETWEEN, COVERED, Preview, drawn_positions
 from pinjoint.editor.context import Context, Gesture, tell
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.arrows import arrow_end, arrow_value, usual
 from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_particle, pick_rod
-from pinjoint.systems.edit.placing import place, snapped, snapped_to_points
+from pinjoint.systems.edit.placing import particle_at, place, snapped, snapped_to_points
 from pinjoint.systems.edit.rods import check_ends, distance, join, share_at
 from pinjoint.systems.edit.supports import SUPPORTS, Held, next_support, support, support_towards
+from pinjoint.systems.edit.typed import UP, number, tidy, vector
 from pinjoint.systems.forms.properties import heading
 
 CLAMPED_BEYOND = 60.0  # points from a particle to its ground, which then holds its rotation, too
@@ -32,10 +36,13 @@ class Drawing(Gesture):
     """A drawing from a particle or a point (m), by clicks, drags or the key of a tool.
 
     tool: the name of the tool and of its action. goes_on: it began by itself where the one before it ended.
+    typed: where it ends, as a person types it, which counts before the pointer. problem: why that was refused.
     """
 
-    tool: ClassVar[str]
+    tool: str
     goes_on = False
+    typed = ""
+    problem = ""
 
     def __init__(self, context: Context, origin: Particle | Vector) -> None:
         self.origin = origin
@@ -65,6 +72,34 @@ class Drawing(Gesture):
         if not self.origin.exists:
             raise Refusal("The particle where this began has been deleted; begin at another one.")
         return _drawn_at(context, self.origin)
+
+    @property
+    def unit(self) -> tuple[str, str]:
+        """The unit of what is typed inside the program, and that of numbers that name none."""
+        return "m", CM[0]
+
+    def accept(self, context: Context, pixel: Vector) -> None:
+        """End as it is typed; why that is refused is said beside what was typed, which stays."""
+        try:
+            self.finish(context, pixel)
+        except DecimalException:
+            self.problem = tr("must be a number")
+        except Mistake as error:
+            self.problem = str(error)
+        view = context.view
+        if not self.problem and not view.shows(context.model, COVERED):
+            view.fit(context.model)
+
+    def end_typed(self, context: Context, pointed: Vector) -> Vector:
+        """Where it ends as it is typed (m); the point that is pointed at if nothing is.
+
+        Raises DecimalException or FieldError.
+        """
+        if not self.typed:
+            return pointed
+        x, y = self.start(context)
+        across, up = vector(self.typed, *self.unit, (pointed[0] - x, pointed[1] - y))
+        return tidy(x + across), tidy(y + up)
 
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; where that is refused, the drawing goes on."""
@@ -98,7 +133,8 @@ class DrawRod(Drawing):
             else tr("rod: click where it ends (or L)")
         )
         done = tr("double click ends the chain     Esc done") if self.goes_on else tr("Esc cancel")
-        self.hint = joined([step, self.kind(context), done], BETWEEN)
+        typed = tr("or type its length, 3@45, or 3; 1.5")
+        self.hint = joined([step, self.kind(context), done, typed], BETWEEN)
 
     @staticmethod
     def kind(context: Context) -> str:
@@ -113,11 +149,13 @@ class DrawRod(Drawing):
 
     def drop(self, context: Context, pixel: Vector) -> None:
         model, view, begin = context.model, context.view, self.origin
-        point = self._point(context, pixel)
+        end = self._ending(context, pixel)
         before = model.particles.count
         with model.transaction(marked("new rod")):
             first = begin if isinstance(begin, Particle) else place(model, view, begin)
-            self._end = pick_particle(model, view, pixel) or place(model, view, point)
+            if not isinstance(end, Particle):
+                end = model.create(Particle, position=[end])[0] if self.typed else place(model, view, end)
+            self._end = end
             rod = join(model, first, self._end, rigid=view.rigid)
         made = model.particles.count - before
         with_new = plural("with one new particle", "with {count} new particles", made) if made else ""
@@ -125,13 +163,19 @@ class DrawRod(Drawing):
         said = [written.length(rod.rest_length, written.DIGITS), made_of, with_new]
         tell(context, joined(said, ", "), rod)
 
-    def _point(self, context: Context, pixel: Vector) -> Vector:
-        """Where it would end without a particle there: nearly level or upright rods are so."""
-        return snapped(context.model, context.view, context.view.camera.to_model(pixel), self.start(context))
+    def _ending(self, context: Context, pixel: Vector) -> Particle | Vector:
+        """The particle or the point where it ends, as typed, else as pointed at: nearly level or upright rods are so."""
+        model, view = context.model, context.view
+        if not self.typed and (particle := pick_particle(model, view, pixel)) is not None:
+            return particle
+        pointed = snapped(model, view, view.camera.to_model(pixel), self.start(context))
+        point = self.end_typed(context, pointed)
+        return particle_at(model, point) or point if self.typed else point
 
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; a click where a chain of rods has come to ends the chain."""
-        if self.goes_on and pick_particle(context.model, context.view, pixel) is self.origin:
+        at_origin = pick_particle(context.model, context.view, pixel) is self.origin
+        if self.goes_on and at_origin and not self.typed:
             context.gesture = None
         else:
             super().finish(context, pixel)
@@ -148,12 +192,10 @@ class DrawRod(Drawing):
         """The tool stays in hand."""
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        start = self.start(context)
-        other = pick_particle(context.model, context.view, pixel)
-        if other is None or other is self.origin or not isinstance(self.origin, Particle):
-            point = self._point(context, pixel)
-            end = point if other is None else _drawn_at(context, other)
-            return Preview("rod", start, end, written.length(math.dist(start, end), 3))
+        start, other = self.start(context), self._ending(context, pixel)
+        if not isinstance(other, Particle) or other is self.origin or not isinstance(self.origin, Particle):
+            end = _drawn_at(context, other) if isinstance(other, Particle) else other
+            return Preview("rod", start, end, _length_and_angle(start, end))
         try:
             check_ends(context.model, self.origin, other)
             label = written.length(distance(self.origin, other), written.DIGITS)
@@ -171,22 +213,32 @@ class DrawArrow(Drawing):
     field: ClassVar[str]
     asks: ClassVar[str]
     says: ClassVar[str]
-    unit: ClassVar[str]
 
     def __init__(self, context: Context, origin: Particle | Vector, *elements: Any) -> None:
         super().__init__(context, origin)
         self.elements: list[Any] = [*elements] or [origin]
         alone = len(self.elements) == 1
         named = self.elements[0].said if alone else heading(context.model, self.elements)
-        self.hint = tr(self.asks, particle=named, rods=named)
+        typed = tr("or type its value: −15, 3; −15 or 15@−60")
+        self.hint = joined([tr(self.asks, particle=named, rods=named), tr("Esc cancel"), typed], BETWEEN)
+
+    @property
+    def _field(self) -> Field[Any]:
+        found: Field[Any] = getattr(type(self.elements[0]), self.field)
+        return found
+
+    @property
+    def unit(self) -> tuple[str, str]:
+        return self._field.unit, self._field.shown[0]
 
     def value(self, context: Context, pixel: Vector) -> Any:
-        """What the arrow to a pixel stands for."""
-        return arrow_value(context.view, self.start(context), pixel, usual(context.model, self.field))
+        """What is typed, of which a number alone points up, or what the arrow to a pixel stands for."""
+        drawn = arrow_value(context.view, self.start(context), pixel, usual(context.model, self.field))
+        return vector(self.typed, *self.unit, drawn, UP) if self.typed else drawn
 
     def shown(self, value: Any) -> str:
         """The text of a value."""
-        return f"{written.vector(value, written.DIGITS)} {self.unit}"
+        return f"{written.vector(value, written.DIGITS)} {self.unit[1]}"
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value, elements = self.value(context, pixel), [one for one in self.elements if one.exists]
@@ -205,8 +257,8 @@ class DrawArrow(Drawing):
 class DrawForce(DrawArrow):
     """The constant force on a particle; beside one, the distributed force on a rod."""
 
-    tool, field, unit = "force", "force", "kN"
-    asks = marked("load on {particle}: click where its arrow ends (or F)     Esc cancel")
+    tool, field = "force", "force"
+    asks = marked("load on {particle}: click where its arrow ends (or F)")
     says = marked("Load on {particle}: {value}")
 
     @classmethod
@@ -224,12 +276,12 @@ class DrawForce(DrawArrow):
 class DrawDistributedForce(DrawArrow):
     """The distributed force on a rod, or on all selected rods if it is one of them, drawn from a point on it."""
 
-    tool, field, unit = "force", "distributed_force", "kN/m"
-    asks = marked("distributed load on {rods}: click where its arrow ends (or F)     Esc cancel")
+    tool, field = "force", "distributed_force"
+    asks = marked("distributed load on {rods}: click where its arrow ends (or F)")
     says = marked("{rods}: distributed load {load}")
 
     def shown(self, value: Any) -> str:
-        return f"{written.vector(value)} {self.unit}"
+        return f"{written.vector(value)} {self.unit[1]}"
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         made = super().preview(context, pixel)
@@ -242,10 +294,8 @@ class DrawDistributedForce(DrawArrow):
 class DrawSpanLoad(DrawArrow):
     """A force at a place of a rod; after a second click on the rod, one that is distributed up to there."""
 
-    tool, field, unit = "span load", "force", "kN"
-    asks = marked(
-        "load on {rods}: click where its arrow ends, or on the rod where a distributed load ends     Esc cancel"
-    )
+    tool, field = "span load", "force"
+    asks = marked("load on {rods}: click where its arrow ends, or on the rod where a distributed load ends")
     says = marked("{rods}: {load}, {place} from its start")
 
     def __init__(self, context: Context, pixel: Vector, rod: Rod) -> None:
@@ -257,18 +307,23 @@ class DrawSpanLoad(DrawArrow):
         rod = None if context.view.covers(pixel) else pick_rod(context.model, context.view, pixel)
         return None if rod is None else cls(context, pixel, rod)
 
+    @property
+    def _field(self) -> Field[Any]:
+        found: Field[Any] = getattr(SpanLoad, self.field)
+        return found
+
     def start(self, context: Context) -> Vector:
         """Where the arrow begins (m): at the last place on the rod, as it is drawn."""
         return _on_rod(context, self.elements[0], self.places[-1])
 
     def finish(self, context: Context, pixel: Vector) -> None:
         place, on_rod = _along(context, self.elements[0], pixel), pick_rod(context.model, context.view, pixel)
-        if len(self.places) > 1 or on_rod is not self.elements[0] or place in self.places:
+        if self.typed or len(self.places) > 1 or on_rod is not self.elements[0] or place in self.places:
             super().finish(context, pixel)
             return
         self.places.append(place)
-        self.field, self.unit = SpanLoad.end_intensity.name, "kN/m"  # type: ignore[misc]
-        self.hint = tr("distributed load: click where its arrow ends     Esc cancel")
+        self.field = SpanLoad.end_intensity.name  # type: ignore[misc]
+        self.hint = joined([tr("distributed load: click where its arrow ends"), tr("Esc cancel")], BETWEEN)
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value, [rod] = self.value(context, pixel), self.elements
@@ -293,8 +348,8 @@ class DrawSpanLoad(DrawArrow):
 class DrawMoment(DrawArrow):
     """The constant moment on a particle or at a place of a rod: to the left counter-clockwise, to the right clockwise."""
 
-    tool, field, unit = "moment", "moment", "kN·m"
-    asks = marked("moment on {particle}: click at its left (counter-clockwise) or right     Esc cancel")
+    tool, field = "moment", "moment"
+    asks = marked("moment on {particle}: click at its left (counter-clockwise) or right")
     says = marked("Moment on {particle}: {value}")
 
     @classmethod
@@ -311,24 +366,27 @@ class DrawMoment(DrawArrow):
         super().__init__(context, particle)
 
     def value(self, context: Context, pixel: Vector) -> float:
+        if self.typed:
+            return number(self.typed, *self.unit)
         x, _ = DrawArrow.value(self, context, pixel)
         return -float(x) + 0.0
 
     def shown(self, value: float) -> str:
         way = tr("counter-clockwise") if value > 0.0 else tr("clockwise") if value < 0.0 else ""
-        return joined([f"{written.given(abs(value))} {self.unit}", way], ", ")
+        return joined([f"{written.given(abs(value))} {self.unit[1]}", way], ", ")
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         value, start = self.value(context, pixel), self.start(context)
-        x, _ = context.view.camera.to_model(pixel) if value else start
+        size = usual(context.model, self.field)
+        x, _ = arrow_end(context.view, start, (-value, 0.0), size) if value else start
         return Preview("moment", start, (x, start[1]), self.shown(value))
 
 
 class DrawSpanMoment(DrawSpanLoad):
     """A moment at a place of a rod."""
 
-    tool, field, unit = "moment", "moment", "kN·m"
-    asks = marked("moment on {rods}: click at its left (counter-clockwise) or right     Esc cancel")
+    tool, field = "moment", "moment"
+    asks = marked("moment on {rods}: click at its left (counter-clockwise) or right")
     value, shown, preview = DrawMoment.value, DrawMoment.shown, DrawMoment.preview  # type: ignore[assignment]
     finish = Drawing.finish
 
@@ -336,8 +394,8 @@ class DrawSpanMoment(DrawSpanLoad):
 class DrawVelocity(DrawArrow):
     """The velocity of a particle; zero where it is held."""
 
-    tool, field, unit = "velocity", "velocity", "m/s"
-    asks = marked("velocity of {particle}: click where its arrow ends (or V)     Esc cancel")
+    tool, field = "velocity", "velocity"
+    asks = marked("velocity of {particle}: click where its arrow ends (or V)")
     says = marked("Velocity of {particle}: {value}")
 
     def __init__(self, context: Context, particle: Particle) -> None:
@@ -379,7 +437,7 @@ class DrawElement(Drawing):
         return cls(context, snapped_to_points(context.model, context.view, pixel))
 
     def drop(self, context: Context, pixel: Vector) -> None:
-        start, end = self.start(context), snapped_to_points(context.model, context.view, pixel)
+        start, end = self.start(context), self._ending(context, pixel)
         if end == start:
             raise Refusal(
                 "The {element} would begin and end at the same point; click another point.",
@@ -391,8 +449,35 @@ class DrawElement(Drawing):
         tell(context, _length_and_angle(start, end), made)
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        start, end = self.start(context), snapped_to_points(context.model, context.view, pixel)
+        start, end = self.start(context), self._ending(context, pixel)
         return Preview("rod", start, end, _length_and_angle(start, end))
+
+    def _ending(self, context: Context, pixel: Vector) -> Vector:
+        return self.end_typed(context, snapped_to_points(context.model, context.view, pixel))
+
+
+class TypePoint(Drawing):
+    """The coordinates of the place where a tool begins, typed before anything is drawn.
+
+    act: what the tool does there.
+    """
+
+    hint = marked("type x; y     Return accept     Esc cancel")
+
+    def __init__(self, context: Context, tool: str, act: Callable[[Vector], Drawing | None]) -> None:
+        super().__init__(context, (0.0, 0.0))
+        self.tool, self._act = tool, act
+
+    def end_typed(self, context: Context, pointed: Vector) -> Vector:
+        return vector(self.typed, *self.unit, pointed)
+
+    def finish(self, context: Context, pixel: Vector) -> None:
+        """Let the tool act there."""
+        context.gesture = self._act(self.end_typed(context, context.view.camera.to_model(pixel)))
+
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        point = self.end_typed(context, context.view.camera.to_model(pixel))
+        return Preview("rod", point, point, written.place(point, written.DIGITS))
 
 
 def _along(context: Context, rod: Rod, pixel: Vector) -> float:

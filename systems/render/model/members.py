@@ -12,7 +12,18 @@ from pinjoint.components.tags import DiagramShown
 from pinjoint.systems.render.labels.nearness import ranges
 from pinjoint.systems.render.labels.occupancy import STRONG
 from pinjoint.systems.render.labels.placing import ANCHORS
-from pinjoint.systems.render.marks import Discs, Fills, Owner, Owners, Points, Rows, Strokes, Truths, Values
+from pinjoint.systems.render.marks import (
+    Discs,
+    Fills,
+    Owner,
+    Owners,
+    Points,
+    Rows,
+    Stamps,
+    Strokes,
+    Truths,
+    Values,
+)
 from pinjoint.systems.render.model.arrows import (
     FORCES,
     MOST,
@@ -28,6 +39,7 @@ from pinjoint.systems.render.symbols import RIM
 from pinjoint.systems.render.theme import Colour
 
 _HINGE = 3.5  # points, radius of a hinge beside a joint
+_SPIRAL = 6.0  # likewise of a spring
 _SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn
 # Points, lengths of the arrows of the smallest and the largest distributed force, usually and beside diagrams.
 _ROW, _LOW_ROW = (11.0, 22.0), (5.0, 11.0)
@@ -43,12 +55,14 @@ _PIECES = 20
 
 
 def draw_hinges(sheet: Sheet) -> None:
-    """Open circles at the ends of rods that turn freely at joints of others that do not, beside these joints."""
+    """Open circles at the ends of rods that turn freely at joints of others that do not, beside these joints; spirals, with
+    their stiffness, at those that springs join."""
     model = sheet.model
     if not sheet.is_frame or not len(sheet.rods):
         return
     rigid, u = rigid_joints(model), sheet.unit
-    free = (model.rods.turning_shares[sheet.rods] == 0.0) & rigid[sheet.ends[sheet.rods]]
+    fixity = model.rods.fixity[sheet.rods]
+    free = (fixity < 1.0) & rigid[sheet.ends[sheet.rods]]
     length = np.hypot(*(sheet.end - sheet.start).T)
     free &= (length > 2.0 * _SHORTEST * _HINGE * u)[:, None]
     which, end = np.nonzero(free)
@@ -59,12 +73,23 @@ def draw_hinges(sheet: Sheet) -> None:
     out = tangent[np.arange(len(rows)), end] * np.where(end == 0, 1.0, -1.0)[:, None]
     out /= np.maximum(np.hypot(*out.T), 1e-300)[:, None]
     joint = sheet.ends[rows, end]
-    at = sheet.centres[joint] + (sheet.radii[joint] + (_HINGE + 0.5) * u)[:, None] * out
-    radius = np.full(len(at), _HINGE * u)
-    sheet.marks.append(Discs(at, radius, sheet.theme.ink, sheet.theme.hollow, RIM * u, ("rods", rows)))
+    sprung = fixity[which, end] > 0.0
+    radius = np.where(sprung, _SPIRAL, _HINGE) * u
+    at = sheet.centres[joint] + (sheet.radii[joint] + radius + 0.5 * u)[:, None] * out
     sheet.occupancy.parts.add(("rods", rows), at, at, radius)
     sheet.occupancy.block_squares(at, radius)
-    sheet.explain("hinge", at, at)
+    sheet.explain("hinge", at[~sprung], at[~sprung])
+    sheet.explain("spring", at[sprung], at[sprung])
+    ink, hollow = sheet.theme.ink, sheet.theme.hollow
+    if not sprung.all():
+        some, of = ~sprung, ("rods", rows[~sprung])
+        sheet.marks.append(Discs(at[some], radius[some], ink, hollow, RIM * u, of))
+    if sprung.any():
+        sheet.marks.append(Stamps("spiral", at[sprung], _SPIRAL * u, u, ink, hollow, of=("rods", rows[sprung])))
+    for k in np.flatnonzero(sprung)[:MOST].tolist():
+        row, side = int(rows[k]), int(end[k])
+        stiffness, key = float(model.rods.end_springs[row, side]), ("rods.end_springs", 2 * row + side)
+        write_spring(sheet, at[k], _SPIRAL * u, stiffness, "kN·m/rad", key, ("rods", row))
 
 
 def gaps(lengths: Values, unit: float) -> Values:
@@ -324,18 +349,34 @@ def write_moment(
     text = text or f"{written.given(abs(moment), written.DIGITS)}{' kN·m' if sheet.view.has_units else ''}"
     angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
     out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
+    short = text if key[0] == "particles.reaction_moment" else ""
+    whose = key, of or ("particles", key[1])
+    _write_around(sheet, at, radius, out, text, colour, whose, abs(moment), short)
+
+
+def write_spring(
+    sheet: Sheet, at: Points, radius: float, stiffness: float, unit: str, key: tuple[str, int], of: Owner
+) -> None:
+    """Write the stiffness of a spring beside its symbol."""
+    angle = np.radians([60.0, 120.0, -60.0, -120.0, 90.0, 0.0, 180.0, -90.0])
+    out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
+    text = f"k = {written.given(stiffness, written.DIGITS)}{f' {unit}' if sheet.view.has_units else ''}"
+    _write_around(sheet, at, radius, out, text, sheet.theme.ink, (key, of), 0.0, text)
+
+
+def _write_around(
+    sheet: Sheet,
+    at: Points,
+    radius: float,
+    out: Points,
+    text: str,
+    colour: Colour,
+    whose: tuple[tuple[str, int], Owner],
+    worth: float,
+    short: str,
+) -> None:
+    """Write a value outside a circle, at one of some directions (k, 2) from it. whose: its key and what it belongs to."""
     near = off(at, out, radius + 2.0 * sheet.unit, half_sizes(sheet, [text]))
-    places, of = np.concatenate([near, near + 8.0 * sheet.unit * out]), of or ("particles", key[1])
-    anchors, rank = at + radius * out[:5], FIRST - abs(moment)
-    write(
-        sheet,
-        text,
-        places,
-        colour,
-        key,
-        of,
-        rank=rank,
-        own=key,
-        leads=(anchors, out[0]),
-        short=text if key[0] == "particles.reaction_moment" else "",
-    )
+    places, rank = np.concatenate([near, near + 8.0 * sheet.unit * out]), FIRST - worth
+    (key, of), leads = whose, (at + radius * out[:5], out[0])
+    write(sheet, text, places, colour, key, of, rank=rank, own=key, leads=leads, short=short)

@@ -244,7 +244,7 @@ def draw_shape(sheet: Sheet) -> None:
     if shape.rotation is not None:
         moving |= shape.rotation != 0.0
     parts = replace(
-        parts, between=parts.between[(drawn := moving[parts.between].any(axis=1))], rigid=parts.rigid[drawn]
+        parts, between=parts.between[(drawn := moving[parts.between].any(axis=1))], fixity=parts.fixity[drawn]
     )
     start, end = farthest = _lines_of_shape(sheet, shape, position, parts, 1.0)
     if swing != 1.0:

@@ -13,12 +13,13 @@ from pinjoint.systems.render.marks import Fills, Mark, Panel, Points, Stamps, St
 from pinjoint.systems.render.model.sheet import DIRECTIONS, Sheet
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 from pinjoint.systems.render.theme import Colour, faded
-from pinjoint.systems.render.typography import line_height, text_width
+from pinjoint.systems.render.typography import line_height, text_width, wrapped
 
 _WIDTH = 2.5  # points, of lines
 _APART, _MOST_ARROWS = 26.0, 40  # points between arrows along a rod, and how many there are at most
 _ARC = 24.0  # points, radius of a moment's
 _COILS = 9  # of the spring that pulls
+_REFUSED = 240.0  # points across what is said of something typed
 
 
 def draw_flashes(sheet: Sheet) -> list[Mark]:
@@ -42,7 +43,9 @@ def draw_preview(sheet: Sheet) -> list[Mark]:
     drawn = _KINDS[preview.kind](sheet, start, end)
     for ends in preview.along:
         drawn += _along(sheet, sheet.view.camera.to_pixels(ends), end - start)
-    return [*drawn, *(_label(sheet, preview, end) if preview.label else [])]
+    if preview.typed:
+        end = np.array(sheet.view.pixel)
+    return [*drawn, *(_label(sheet, preview, end) if preview.label or preview.typed else [])]
 
 
 def _rod(sheet: Sheet, start: Points, end: Points) -> list[Mark]:
@@ -135,20 +138,31 @@ def _lines(sheet: Sheet, points: Points, colour: Colour, width: float = _WIDTH) 
 
 
 def _label(sheet: Sheet, preview: Preview, at: Points) -> list[Mark]:
-    """The value beside the end, inside the viewport, where no other label stands."""
-    u, v, theme = sheet.unit, sheet.viewport, sheet.theme
-    text, size = preview.label.replace("-", "−"), sheet.font(13.0)
-    width, height = text_width(text, size, "semibold") + 14.0 * u, line_height(size) + 6.0 * u
+    """The value beside the end, inside the viewport; below what is typed at the pointer, and why that is refused instead."""
+    u, v, theme, size = sheet.unit, sheet.viewport, sheet.theme, sheet.font(13.0)
+    lines = [(preview.label, theme.muted if preview.typed else theme.text)] * bool(preview.label)
+    if preview.problem:
+        refused = wrapped(preview.problem, _REFUSED * u, size, "semibold")
+        lines = [(line, theme.problem) for line in refused]
+    lines = [(text.replace("-", "−"), ink) for text, ink in ((preview.typed, theme.text), *lines) if text]
+    width = max(text_width(text, size, "semibold") for text, _ in lines) + 14.0 * u
+    apart = line_height(size)
+    height = len(lines) * apart + 6.0 * u
     left = float(np.clip(at[0] + 14.0 * u, v.left, max(v.right - width, v.left)))
     top = float(np.clip(at[1] - 14.0 * u - height, v.top, max(v.bottom - height, v.top)))
     sheet.occupancy.block(left, top, width, height)
+    middles = (top + 3.0 * u + (number + 0.5) * apart for number in range(len(lines)))
     return [
         Panel(left, top, width, height, 5.0 * u, faded(theme.panel, 0.94), theme.line),
-        Text(text, left + 7.0 * u, top + height / 2, size, theme.text, "semibold"),
+        *(
+            Text(text, left + 7.0 * u, middle, size, ink, "semibold")
+            for (text, ink), middle in zip(lines, middles, strict=True)
+        ),
     ]
 
 
 _KINDS: dict[str, Callable[[Sheet, Points, Points], list[Mark]]] = {
+    "": lambda sheet, start, end: [],
     "rod": _rod,
     "force": lambda sheet, start, end: _arrow(sheet, start, end, sheet.theme.load),
     "distributed force": lambda sheet, start, end: [],

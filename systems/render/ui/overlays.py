@@ -255,6 +255,7 @@ MEANINGS = {
     "inertia": marked("inertia −m a"),
     "velocity": marked("velocity"),
     "hinge": marked("hinge"),
+    "spring": marked("spring"),
     "ghost": marked("undeformed"),
     "deflected": marked("deflected"),
     **NAMES,
@@ -346,12 +347,14 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
     x, y, width = place.left, place.middle[1], place.width
     if name in _SCALES:
         return scale_bar(theme, x, y, width, u)
-    in_ink = ("slack", "hinge", "moment", "shear", "velocity", "inertia")
+    in_ink = ("slack", "hinge", "spring", "moment", "shear", "velocity", "inertia")
     drawn_in = {"first": "yielding", "deflected": "sketch"} | dict.fromkeys(in_ink, "ink")
     colour = getattr(theme, drawn_in.get(name, name))
     ends = np.array([[x, y]]), np.array([[x + width, y]])
     if name == "hinge":
         return [Stamps("ring", ends[0] + [width / 2, 0.0], 4.0 * u, u, theme.ink, theme.hollow)]
+    if name == "spring":
+        return [Stamps("spiral", ends[0] + [width / 2, 0.0], 6.0 * u, u, theme.ink, theme.hollow)]
     if name in ("load", "reaction", "inertia", "velocity"):
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
     if name == "first":

@@ -76,7 +76,7 @@ def test_l_over_a_particle_then_l_or_a_click_over_another_or_a_drag_there(two: S
 def test_the_length_is_shown_before_the_rod_is_made(two: Session) -> None:
     press_at(two, "l", 0.0, 0.0)
     two.point(1.0, 1.0)
-    assert preview(two) == Preview("rod", (0.0, 0.0), (1.0, 1.0), "141 cm")
+    assert preview(two) == Preview("rod", (0.0, 0.0), (1.0, 1.0), "141.4 cm, 45°")
     two.point(1.47, 0.03)  # snaps to the particle
     assert preview(two) == Preview("rod", (0.0, 0.0), (1.5, 0.0), "150 cm")
 
