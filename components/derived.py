@@ -309,12 +309,12 @@ def present_diagrams(world: World) -> None:
     length = np.hypot(present[:, 0], present[:, 1])
     axis = present / np.where(length > 0.0, length, 1.0)[:, None]
     rotation, forces = particles.rotation[rods.between], (rods.axial_force, rods.end_moment)
-    for name, values in diagrams(rods, axis, length, chord_rotation(world), rotation, forces).items():
+    for name, values in diagrams(world, axis, length, chord_rotation(world), rotation, forces).items():
         world.writable(f"rods.{name}")[...] = values
 
 
 def diagrams(
-    rods: Table[Any],
+    world: World,
     axis: Column,
     length: Column,
     chord: Column,
@@ -330,8 +330,8 @@ def diagrams(
     both ends, (rods, 2). forces: axial (rods,), and moments on both ends, counter-clockwise (rods, 2).
     first_order: axes count as straight where forces act on them.
     """
-    axial_force, moment = forces
-    between, bent = Kinks.of(rods.world, share), 0.0 if first_order else 1.0
+    rods, (axial_force, moment) = world.tables["rods"], forces
+    between, bent = Kinks.of(world, share), 0.0 if first_order else 1.0
     slopes = rigid_slopes(rods, rotation, chord)
     couple = share * rods.span_load[:, 6] - bent * share * (on_axis(rods.span_load, axis)[0] * slopes).sum(
         axis=1

@@ -195,5 +195,6 @@ def on_rod(model: Model, row: int) -> list[Force]:
         lever = length * float(along[0] * far[1] - along[1] * far[0])
         lever += float(left[0] * bowed[1] - left[1] * bowed[0])
         name = tr("distributed force") if load < 0 else model.describe(model.span_loads[load])
-        found.append(Force(name, "load", *(near + far).tolist(), moment=float(work[6]), lever=lever))
+        x, y = (near + far).tolist()
+        found.append(Force(name, "load", x, y, moment=float(work[6]), lever=lever))
     return found

@@ -443,10 +443,9 @@ def turned_between(world: World) -> bool:
 def bearing(world: World) -> NDArray[np.bool_]:
     """Between the ends of which rods something acts, (rods,)."""
     rods, loads = world.tables["rods"], world.tables["span_loads"]
-    found: NDArray[np.bool_] = rods.distributed_force.any(axis=1)
-    acting = loads.moment != 0.0
-    for name in ("force", "start_intensity", "end_intensity"):
-        acting |= loads.column(name).any(axis=1)
+    found: NDArray[np.bool_] = np.asarray(rods.distributed_force.any(axis=1))
+    parts = [loads.column(name) for name in ("force", "start_intensity", "end_intensity")]
+    acting = np.column_stack([loads.moment, *parts]).any(axis=1)
     found[loads.rod[acting]] = True
     return found
 

@@ -128,7 +128,7 @@ class Kinks(NamedTuple):
 
     def divided(self, row: Rows, low: Column, high: Column) -> Kinks:
         """Those of parts of rods, (p,), by rows ascending, from share to share."""
-        first, last = (np.searchsorted(row, self.row, side=side) for side in ("left", "right"))  # type: ignore[call-overload]
+        first, last = (np.searchsorted(row, self.row, side=side) for side in ("left", "right"))
         kink, part = groups(first, last)
         place, order, size, load = (column[kink] for column in self[1:])
         after, width = place - low[part], (high - low)[part]
@@ -253,7 +253,7 @@ class Curves:
         if not len(self.row):
             return Curves(polynomials, *self._kinks)
         chosen = np.arange(len(self))[which]
-        first, last = (np.searchsorted(self.row, chosen, side=side) for side in ("left", "right"))  # type: ignore[call-overload]
+        first, last = (np.searchsorted(self.row, chosen, side=side) for side in ("left", "right"))
         row, kinks = groups(first, last)
         return Curves(polynomials, row, *(column[kinks] for column in self._kinks[1:]))
 
@@ -310,7 +310,7 @@ class Curves:
         last = np.append(row[1:] != row[:-1], True)
         high = np.where(last, 1.0, np.append(low[1:], 1.0))
         polynomials = self.polynomials[row]
-        kink, piece = groups(*(np.searchsorted(row, self.row, side=side) for side in ("left", "right")))  # type: ignore[call-overload]
+        kink, piece = groups(*(np.searchsorted(row, self.row, side=side) for side in ("left", "right")))
         acts = low[piece] >= self.place[kink]
         kink, piece = kink[acts], piece[acts]
         for index in range(polynomials.shape[1]):  # (ξ − a)ⁿ as powers of ξ

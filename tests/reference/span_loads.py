@@ -23,10 +23,10 @@ def divided(document: Document, stiff: float = 1e3) -> tuple[Document, dict[str,
         first, last = (place[name] for name in rod["between"])
         way = last - first
         length = float(np.hypot(*way))
-        cuts = {
+        inside = {
             x for load in own for x in (load.get("start", 0.0), load.get("end", length)) if 0.0 < x < length
         }
-        cuts = [0.0, *sorted(cuts), length]
+        cuts = [0.0, *sorted(inside), length]
         names = [rod["between"][0], *(f"{rod['name']} {i}" for i in range(1, len(cuts) - 1)), rod["between"][1]]
         for name, x in list(zip(names, cuts, strict=True))[1:-1]:
             made["particles"].append({"name": name, "position": (first + x / length * way).tolist()})

@@ -329,7 +329,7 @@ class DrawSpanLoad(DrawArrow):
         value, [rod] = self.value(context, pixel), self.elements
         start, *end = sorted(self.places)
         fields = (self.field, *[SpanLoad.start_intensity.name] * len(end))
-        where = {"start": [start], "end": end or [None]}
+        where: dict[str, Any] = {"start": [start], "end": end or [None]}
         context.model.create(SpanLoad, 1, rod=[rod.row], **where, **{field: [value] for field in fields})
         context.select(rod)
         place = " … ".join(written.length(x, written.DIGITS) for x in (start, *end))
@@ -387,7 +387,7 @@ class DrawSpanMoment(DrawSpanLoad):
 
     tool, field = "moment", "moment"
     asks = marked("moment on {rods}: click at its left (counter-clockwise) or right")
-    value, shown, preview = DrawMoment.value, DrawMoment.shown, DrawMoment.preview  # type: ignore[assignment]
+    value, shown, preview = DrawMoment.value, DrawMoment.shown, DrawMoment.preview
     finish = Drawing.finish
 
 

@@ -200,8 +200,8 @@ def _draw_points(sheet: Sheet, spans: Spans) -> None:
         )
         sheet.explain("load moment", at[some], at[some])
         for k, value in zip(some.tolist(), moment.tolist(), strict=True):
-            key, of = ("span_loads.moment", int(load[k])), ("rods", int(spans.row[k]))
-            write_moment(sheet, at[k], float(radius[0]), value, colour, key, of=of)
+            key, rod = ("span_loads.moment", int(load[k])), int(spans.row[k])
+            write_moment(sheet, at[k], float(radius[0]), value, colour, key, of=("rods", rod))
 
 
 def _told(sheet: Sheet, spans: Spans) -> set[int]:
