@@ -237,36 +237,36 @@ class _State(NamedTuple):
 
 
 def _state(model: Model, rows: Rows) -> _State:
-    revision, found = model.bent
-    if revision != model.revision:  # a picture asks nine times
-        with np.errstate(invalid="ignore"):  # of rods whose ends are nowhere, which are not drawn
-            found = _states(model)
-        model.bent = model.revision, found
-    length, left, slopes, bow = found
+    length, left, slopes, bow = _states(model)[0]
     return _State(length[rows], left[rows], slopes[rows], bow.some(rows))
 
 
-def _states(model: Model) -> _State:
-    rods, particles = model.rods, model.particles
-    length, along = _chords(model)
-    left = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    between = Kinks.of(model, model.share)
-    rigid = rigid_slopes(rods, particles.rotation[rods.between], chord_rotation(model))
-    slopes = all_slopes(rods, rigid, on_axis(between.on_clamped(rods.rest_length), along)[1])
-    slopes = np.where((rods.bending_stiffness > 0.0)[:, None], length[:, None] * slopes, 0.0)
-    bow = between.sags(left, rods.rest_length, rods.bending_stiffness).plus(cubic(*slopes.T))
-    return _State(length, left, slopes, bow)
+def _states(model: Model) -> tuple[_State, Kinks]:
+    """Those of all rods, and what acts between their ends."""
+    revision, found = model.bent
+    if revision != model.revision:  # a picture asks nine times
+        with np.errstate(invalid="ignore"):  # of rods whose ends are nowhere, which are not drawn
+            found = _found(model)
+        model.bent = model.revision, found
+    known: tuple[_State, Kinks] = found
+    return known
 
 
-def _chords(model: Model) -> tuple[Array, Array]:
-    """Lengths (m) and directions (rods, 2) of the chords about which rods bend."""
+def _found(model: Model) -> tuple[_State, Kinks]:
     rods, particles = model.rods, model.particles
     first, second = rods.between.astype(np.intp).T
     present = rods.difference
     if not model.first_order:
         present = present + particles.displacement[second] - particles.displacement[first]
     length = np.hypot(present[:, 0], present[:, 1])
-    return length, present / np.where(length > 0.0, length, 1.0)[:, None]
+    along = present / np.where(length > 0.0, length, 1.0)[:, None]
+    left = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    between = Kinks.of(model, model.share)
+    rigid = rigid_slopes(rods, particles.rotation[rods.between], chord_rotation(model))
+    slopes = all_slopes(rods, rigid, on_axis(between.on_clamped(rods.rest_length), along)[1])
+    slopes = np.where((rods.bending_stiffness > 0.0)[:, None], length[:, None] * slopes, 0.0)
+    bow = between.sags(left, rods.rest_length, rods.bending_stiffness).plus(cubic(*slopes.T))
+    return _State(length, left, slopes, bow), between
 
 
 def inner_forces(model: Model, rows: Rows, quantity: str) -> Curves:
@@ -274,17 +274,16 @@ def inner_forces(model: Model, rows: Rows, quantity: str) -> Curves:
 
     M as in `moments_along`, with what acts between the ends and, but for first-order theory, the cubic deflection v.
     """
-    rods, (length, along) = model.rods, _chords(model)
+    rods, (state, between) = model.rods, _states(model)
     name = {AXIAL: "end_axial_force", SHEAR: "shear", MOMENT: "bending_moment"}[quantity]
-    ends, between = getattr(rods, name), Kinks.of(model, model.share)
+    ends = getattr(rods, name)
     if quantity == MOMENT:
-        slopes = _state(model, np.arange(rods.count)).slopes
-        thrust = np.zeros(rods.count) if model.first_order else rods.axial_force
-        return moments_along(ends, between, along, length, thrust[:, None] * cubic(*slopes.T)).some(rows)
-    x, y = along[between.row].T
-    size = between.size[:, 0] * -x - between.size[:, 1] * y
-    if quantity == SHEAR:
-        size = between.size[:, 1] * x - between.size[:, 0] * y
+        thrust = 0.0 if model.first_order else rods.axial_force[:, None]
+        found = moments_along(ends, between, state.left, state.length, thrust * cubic(*state.slopes.T))
+        return found.some(rows)
+    x, y = state.left[between.row].T
+    across = between.size[:, 0] * x + between.size[:, 1] * y
+    size = across if quantity == SHEAR else between.size[:, 1] * x - between.size[:, 0] * y
     return between.integrated(1, size, rods.count, 3).plus(ends[:, :1]).some(rows)
 
 

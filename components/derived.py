@@ -341,14 +341,14 @@ def diagrams(
     x, y = axis[:, :1], axis[:, 1:]
     on_ends = between.on_ends(rods.count) * [[[-1.0], [1.0]]]
     slopes = all_slopes(rods, slopes, on_axis(between.on_clamped(rods.rest_length), axis)[1])
-    bending_moment = moment * [-1.0, 1.0]
+    bending_moment, left = moment * [-1.0, 1.0], np.concatenate([-y, x], axis=1)
     thrust = (bent * axial_force * length)[:, None] * cubic(*slopes.T)
     return {
         "end_axial_force": axial_force[:, None] - on_ends[..., 0] * x - on_ends[..., 1] * y,
         "shear": shear[:, None] + on_ends[..., 1] * x - on_ends[..., 0] * y,
         "bending_moment": bending_moment,
         "end_rotation": chord[:, None] + slopes,
-        "largest_moment": _largest_moment(moments_along(bending_moment, between, axis, length, thrust), length),
+        "largest_moment": _largest_moment(moments_along(bending_moment, between, left, length, thrust), length),
     }
 
 
@@ -380,14 +380,15 @@ def cubic(start: Column, end: Column) -> Column:
     return np.stack([np.zeros(len(start)), start, -(2.0 * start + end), start + end], axis=1)
 
 
-def moments_along(ends: Column, between: Kinks, axis: Column, length: Column, by_thrust: Column) -> Curves:
+def moments_along(ends: Column, between: Kinks, left: Column, length: Column, by_thrust: Column) -> Curves:
     """M(ξ) = M_s (1 − ξ) + M_e ξ + what acts between the ends makes of simple beams + N v(ξ) of all rods.
 
-    ends: M_s and M_e, (rods, 2). axis, length: of the chords. by_thrust: N v, (rods, 4).
+    ends: M_s and M_e, (rods, 2). left: unit vectors to the left of the chords, length: theirs. by_thrust: N v, (rods, 4).
     """
-    left = np.stack([-axis[:, 1], axis[:, 0]], axis=1)
-    straight = np.pad(np.stack([ends[:, 0], ends[:, 1] - ends[:, 0]], axis=1), ((0, 0), (0, 2)))
-    return between.bulges(left, length).plus(straight + by_thrust)
+    straight = by_thrust.copy()
+    straight[:, 0] += ends[:, 0]
+    straight[:, 1] += ends[:, 1] - ends[:, 0]
+    return between.bulges(left, length).plus(straight)
 
 
 def _largest_moment(moments: Curves, length: Column) -> Column:
