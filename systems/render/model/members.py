@@ -156,8 +156,9 @@ def _draw_rows(sheet: Sheet, spans: Spans, largest: float) -> None:
 def _draw_points(sheet: Sheet, spans: Spans) -> None:
     """Arrows and curved arrows at places of rods, with their values."""
     share, u, colour = sheet.model.share, sheet.unit, sheet.theme.load
-    at = Axes.of(sheet.model, spans.row).points(spans.start[:, None])[:, 0]
-    at = sheet.view.camera.to_pixels(at)
+    way = np.diff(sheet.centres[sheet.ends[spans.row]], axis=1)[:, 0]
+    start = _shares_seen(sheet, spans, np.hypot(*way.T))[0]
+    at = sheet.view.camera.to_pixels(Axes.of(sheet.model, spans.row).points(start[:, None])[:, 0])
     near, load = (np.abs(at) < _FAR).all(axis=1), spans.load
     some = np.flatnonzero(near & spans.force.any(axis=1))[:MOST]
     if len(some):
@@ -224,9 +225,8 @@ def _tips(sheet: Sheet, spans: Spans, along: Points) -> tuple[Rows, Points, Trut
     way = np.diff(sheet.centres[sheet.ends[rows]], axis=1)[:, 0]
     length = np.hypot(*way.T)
     shifted = np.abs((along * way).sum(axis=1)) > 0.97 * length
-    apart = gaps(length, u) / np.maximum(length, 1e-300) if sheet.view.free_bodies else np.zeros(len(rows))
-    low, high = np.maximum(spans.start, apart), np.minimum(spans.end, 1.0 - apart)
-    seen = np.maximum(high - low, 0.0)
+    low, high = _shares_seen(sheet, spans, length)
+    seen = high - low
     count = np.clip(np.nan_to_num(np.round(seen * length / (_APART * u))), 2, _MOST_ARROWS).astype(np.intp)
     many = np.where(shifted, count, count + 1)
     many[np.where(spans.load < 0, 0.5, seen) * length < _APART * u] = 0
@@ -238,8 +238,17 @@ def _tips(sheet: Sheet, spans: Spans, along: Points) -> tuple[Rows, Points, Trut
     beside = _BESIDE * across * np.where(across[:, 1:] <= 0.0, 1.0, -1.0)
     tips = sheet.view.camera.to_pixels(points) + u * np.where(shifted[:, None], beside, -1.5 * along)[which]
     near = (np.bincount(which, ~(np.abs(tips) < _FAR).all(axis=1), len(rows)) == 0.0)[which]
-    part = (shares - spans.start[which]) / np.maximum(spans.end - spans.start, 1e-300)[which]
+    part = number / count[which]
     return which[near], tips[near], shifted, part[near]
+
+
+def _shares_seen(sheet: Sheet, spans: Spans, length: Values) -> tuple[Values, Values]:
+    """From which share to which loads are drawn on rods of these lengths in pixels, which are shorter where drawn apart."""
+    if not sheet.view.free_bodies:
+        return spans.start, spans.end
+    apart = gaps(length, sheet.unit) / np.maximum(length, 1e-300)
+    low, high = (apart + share * (1.0 - 2.0 * apart) for share in (spans.start, spans.end))
+    return low, high
 
 
 def _label_row(
