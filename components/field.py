@@ -20,7 +20,8 @@ T = TypeVar("T")
 Vector = tuple[float, float]
 Column = NDArray[Any]
 
-CM = ("cm", 100.0)  # as all lengths are shown on screen, displacements among them
+# The usual unit on screen of lengths and of displacements, which may have another one, and how many of it are a metre.
+CM, MOVED = ("cm", 100.0), ("displacement", 100.0)
 LARGEST, SMALLEST = 1e30, 1e-30  # sizes of numbers to compute with, in inside units; SMALLEST of those above 0
 _FEW = 8  # rows up to which checking values one by one is faster than as an array
 _LARGEST_REFERENCE = 2**32 - 1
@@ -34,6 +35,15 @@ _STORAGE: dict[Any, tuple[Any, Any, str, set[type]]] = {
     object: (object, None, "", set()),
     "reference": (np.uint32, 0, "iu", {int, np.int64, np.uint32}),
 }
+
+
+# What else is shown in place of a usual unit: the unit, and how many of it are one of the usual; see components/units.py.
+SCREEN: dict[str, tuple[str, float]] = {}
+
+
+def on_screen(usual: str) -> tuple[str, float]:
+    """The unit that a person wants to see in place of a usual one, and how many of it are one of that."""
+    return SCREEN.get(usual) or (CM[0] if usual == MOVED[0] else usual, 1.0)
 
 
 class Role(Enum):
@@ -62,7 +72,7 @@ class Field(Generic[T]):
     Reading gives a plain Python value (a vector is an immutable tuple). Assigning is a command: it is
     checked, undoable, and marks the column as changed.
 
-    unit: unit inside the program and in files; `shown` is (unit, factor) on screen, by default the same.
+    unit: unit inside the program and in files; `shown` is the usual (unit, factor) on screen, by default the same.
     title: what a person calls it; by default its name with spaces.
     dtype: float, bool, int, str, "reference" (row of another table, stored as uint32) or object.
     shape: () or (2,); wider where it is computed. axes: what its parts are called.
@@ -123,6 +133,13 @@ class Field(Generic[T]):
         self.storage: np.dtype[Any] = np.dtype(storage)
         self._has_objects = self.storage.hasobject
         self.plain = not (self.shape or self.nullable or self._has_objects)
+
+    @property
+    def on_screen(self) -> tuple[str, float]:
+        """The unit that a person sees it in, and how many of it are one of the unit inside."""
+        usual, factor = self.shown
+        unit, more = on_screen(usual)
+        return unit, factor * more
 
     def _limit(self) -> None:
         """Give the limits that every number has to those that are not stated."""
@@ -254,7 +271,7 @@ class Field(Generic[T]):
 
     def limit_broken_by(self, number: float, *, shown: bool = False) -> str | None:
         """The limit that a number breaks, in words (in the unit on screen if `shown`), or None."""
-        unit, factor = self.shown if shown else (self.unit, 1.0)
+        unit, factor = self.on_screen if shown else (self.unit, 1.0)
 
         def amount(limit: float) -> str:
             return joined([decimals(f"{limit * factor:g}"), unit])

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.field import CM, Field, FieldError, Vector, derived, if_known, state
+from pinjoint.components.field import CM, MOVED, Field, FieldError, Vector, derived, if_known, state
 from pinjoint.components.handle import Handle
+from pinjoint.components.language import joined
 from pinjoint.components.table import Store, Table, flags
 
 DEFAULT_MASS = 1.0  # kg, of a particle without rods
@@ -26,7 +27,7 @@ class Particle(Handle):
         "m", shape=(2,), title="original position", doc="Where it was drawn, before any displacement.", shown=CM
     )
     displacement: Field[Vector] = state(
-        "m", shape=(2,), doc="Present position minus original position.", shown=CM
+        "m", shape=(2,), doc="Present position minus original position.", shown=MOVED
     )
     velocity: Field[Vector] = state(
         "m/s", shape=(2,), doc="How fast it moves; zero in a constrained direction."
@@ -49,6 +50,15 @@ class Particle(Handle):
         dtype=bool,
         title="rotation constrained",
         doc="Clamped: the rods rigidly joined to it cannot turn there.",
+    )
+    support_springs: Field[Vector] = Field(
+        "kN/m",
+        shape=(2,),
+        minimum=0.0,
+        doc="Stiffness of an elastic support along x, along y, from the original position; 0: none.",
+    )
+    rotation_spring: Field[float] = Field(
+        "kN·m/rad", minimum=0.0, doc="Stiffness of an elastic support against turning; 0: none."
     )
     force: Field[Vector] = Field("kN", shape=(2,), title="load", doc="Constant force on it.")
     moment: Field[float] = Field(
@@ -103,14 +113,14 @@ class Particle(Handle):
         "kN", shape=(2,), title="sum of loads", doc="All loads and weights on it now, without reactions."
     )
     reaction: Field[Vector] = derived(
-        "kN", shape=(2,), doc="The support's force on it in constrained directions, 0 elsewhere."
+        "kN", shape=(2,), doc="The force on it of its support, rigid or elastic; 0 where it has none."
     )
 
     applied_moment: Field[float] = derived(
         "kN·m", title="external moment", doc="All external moment on it now, without reactions."
     )
     reaction_moment: Field[float] = derived(
-        "kN·m", doc="The moment of its clamped support on it, counter-clockwise; 0 where it can turn."
+        "kN·m", doc="The moment of its clamp or rotation spring on it, counter-clockwise; 0 where it has none."
     )
 
     @classmethod
@@ -140,8 +150,47 @@ class Particle(Handle):
         elif "fixed_rotation" in changed:
             stopped = np.where(table.fixed_rotation[rows], 0.0, table.angular_velocity[rows])
             table.world.assign([table[row] for row in rows.tolist()], "angular_velocity", stopped)
+        _check_springs(table, rows, changed)
         if "position" in changed:
             _check_rods(table, rows)
+
+
+def _check_springs(table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
+    """A direction that a rigid support holds from now on has no spring; none is put where one holds it already."""
+    for held, name in (("fixed", "support_springs"), ("fixed_rotation", "rotation_spring")):
+        springs, rigid = table.column(name)[rows], table.column(held)[rows]
+        idle = rigid & (springs > 0.0)
+        if not idle.any():
+            continue
+        particles = [table[row] for row in rows.tolist()]
+        if name not in changed:
+            table.world.assign(particles, name, np.where(rigid, 0.0, springs))
+            continue
+        place, *axis = np.argwhere(idle)[0].tolist()
+        raise FieldError(
+            "{where}: a rigid support holds it there, where a spring would do nothing; free the direction or leave the"
+            " spring out.",
+            where=joined([table.world.describe(particles[place], name), *("xy"[k] for k in axis)]),
+        )
+
+
+def supported(world: Store) -> NDArray[np.bool_]:
+    """In which directions supports, rigid or elastic, act on particles: x, y and rotation, shape (particles, 3)."""
+    particles = world.tables["particles"]
+    rigid = np.column_stack([particles.fixed, particles.fixed_rotation])
+    found: NDArray[np.bool_] = rigid | (spring_stiffness(world) > 0.0)
+    return found
+
+
+def is_sprung(world: Store) -> bool:
+    """True if some support is elastic."""
+    return bool(spring_stiffness(world).any())
+
+
+def spring_stiffness(world: Store) -> NDArray[np.float64]:
+    """Stiffness of elastic supports in x, y (kN/m) and against turning (kN·m/rad), shape (particles, 3)."""
+    particles = world.tables["particles"]
+    return np.column_stack([particles.support_springs, particles.rotation_spring])
 
 
 def _check_rods(table: Table[Any], rows: NDArray[np.intp]) -> None:

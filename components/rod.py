@@ -324,7 +324,7 @@ def _heed_names(table: Table[Any], rows: NDArray[np.intp], changed: Collection[s
         for name, number in _contradictions(rod, changed):
             if not alone:
                 field, value = table.fields[number], getattr(rod, number)
-                unit, factor = field.shown
+                unit, factor = field.on_screen
                 raise FieldError(
                     "{rod}: {title} is {value:.6g} {unit}, but {name} has another value; leave out one of the two.",
                     rod=world.describe(rod),
@@ -399,6 +399,11 @@ def _check_ends(table: Table[Any], rows: NDArray[np.intp]) -> None:
 def is_warm(world: World) -> bool:
     """True if the temperature of some rod has changed."""
     return bool(world.tables["rods"].temperature_change.any())
+
+
+def is_warped(world: World) -> bool:
+    """True if some rod that bends is warmer on one side."""
+    return bool(world.tables["rods"].initial_slopes.any())
 
 
 def bends(world: World) -> bool:

@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from decimal import Decimal
 
-from pinjoint.components.field import FieldError
+from pinjoint.components.field import CM, MOVED, SCREEN, FieldError
+from pinjoint.components.language import joined
 
 _Dimension = tuple[int, ...]  # powers of m, kg, s, K; angles have none
 
@@ -47,6 +50,17 @@ _MARKS = "·*./ "
 _PART = re.compile(rf"([{_MARKS}]?)({_NAMES})(?:\^?(-?\d)|(⁻?[²³⁴⁶]))?")
 _RAISED = str.maketrans("²³⁴⁶⁻", "2346-")
 _WITH_UNIT = re.compile(r"(.*?[\d.]) ?([^\d\s.eE].*)")
+# What people choose on screen, by name; "" are the usual units, of which the others replace those of the same kind.
+USUAL = "cm kN"
+PRESETS = {
+    USUAL: "",
+    "m kN mm": "m, mm displacement, kg/m",
+    "N mm": "mm, N, N·mm, N/mm, N·mm², N/mm², mm², mm³, mm⁴, kg/m, N·mm/rad, N·s/mm",
+}
+_ON_SCREEN = (
+    *(CM[0], MOVED[0], "kN", "kN·m", "kN/m", "kN·m²", "kN·m/rad", "kN·s/m", "kg/cm", "GPa", "MPa"),
+    *("cm²", "cm³", "cm⁴", "rad", "mrad"),
+)
 # Of these, an error names those that fit.
 _USUAL = (
     *(
@@ -113,3 +127,48 @@ def _read(unit: str) -> tuple[Decimal, _Dimension, str]:
         powers = tuple(one + power * other for one, other in zip(powers, own, strict=True))
         rest = rest[part.end() :]
     return factor, powers, rest
+
+
+def show_in(text: str) -> None:
+    """Say numbers on screen in other units: those of a preset, or some, such as "m, kN, mm displacement, °, 5 digits".
+
+    Raises FieldError if one is none, or is of no kind that is shown; then all stays as it was.
+    """
+    found = {"units": (text, 0.0)}
+    for part in filter(None, map(str.strip, PRESETS.get(text, text).split(","))):
+        unit, _, what = part.partition(" ")
+        if what == "digits" and unit in "345678":
+            found[what] = "", float(unit)
+            continue
+        size, powers, rest = _read(unit)
+        usual = {kind: _read(CM[0] if kind == MOVED[0] else kind) for kind in _ON_SCREEN if what in ("", kind)}
+        chosen = {
+            kind: (unit, float(own / size))
+            for kind, (own, its, _) in usual.items()
+            if its == powers and ("/rad" in kind) == ("/rad" in unit)
+        }
+        if rest or not chosen:
+            raise FieldError(
+                "“{part}” is no unit on screen; write units such as {units}, or 3 to 8 digits.",
+                part=part,
+                units=joined(_ON_SCREEN, ", "),
+            )
+        found |= chosen
+    SCREEN.clear()
+    SCREEN.update(found)
+
+
+def units_on_screen() -> str:
+    """What was chosen last: the name of a preset, or units."""
+    return SCREEN.get("units", (USUAL, 0.0))[0]
+
+
+@contextmanager
+def shown_in(text: str) -> Iterator[None]:
+    """Say numbers in such units for a while. Raises FieldError."""
+    before = units_on_screen()
+    show_in(text)
+    try:
+        yield
+    finally:
+        show_in(before)

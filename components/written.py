@@ -1,7 +1,8 @@
 """Written: numbers as people read them on screen, with few digits and one unit for each kind of thing.
 
-Lengths, displacements among them, are in cm, forces in kN, strains in ‰, shares in %. Minus signs are real ones,
-what is nothing but rounding is 0, and the decimal sign is that of the language.
+Lengths, displacements among them, are in cm, forces in kN, unless a person wants other units (see units.py); strains are
+in ‰, shares in %. Minus signs are real ones, what is nothing but rounding is 0, and the decimal sign is that of the
+language.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
-from pinjoint.components.field import CM
+from pinjoint.components.field import CM, MOVED, SCREEN, on_screen
 from pinjoint.components.language import decimals, english, joined, several, tr
 
 DIGITS = 4  # significant ones of a result
@@ -64,11 +65,17 @@ def _number(value: float, digits: int, nothing: float = 0.0) -> str:
         return "—" if math.isnan(value) else f"{'−' * (value < 0)}∞"
     if abs(value) <= nothing or value == 0.0:
         return "0"
+    digits = wanted(digits)
     mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
     power = int(exponent)
     if power in _PLAIN:
         return f"{value:.{max(digits - 1 - power, 0)}f}".replace("-", "−")
     return f"{mantissa}·10{str(power).translate(_RAISED)}".replace("-", "−")
+
+
+def wanted(digits: int) -> int:
+    """So many significant digits; as many as a person wants where they are those of a result."""
+    return round(SCREEN.get("digits", ("", DIGITS))[1]) if digits == DIGITS else digits
 
 
 def given(value: float, digits: int = _GIVEN_DIGITS) -> str:
@@ -81,29 +88,44 @@ def _with_unit(number: str, unit: str) -> str:
     return f"{number} {unit}" if type(number) is str else joined((number, unit))  # the latter keeps the English
 
 
+def amount(value: float, usual: str, *, nothing: float = 0.0, bare: bool = False) -> str:
+    """A number in a usual unit that was computed, in the unit that is on screen in its place, which bare ones leave out."""
+    unit, factor = on_screen(usual)
+    text = number(factor * value, nothing=factor * nothing)
+    return text if bare else _with_unit(text, unit)
+
+
+def stated(value: float | Iterable[float], usual: str, digits: int = _GIVEN_DIGITS) -> str:
+    """A number or a vector in a usual unit that a person set, with the unit that is on screen in its place."""
+    unit, factor = on_screen(usual)
+    if isinstance(value, Iterable):
+        return _with_unit(vector((factor * part for part in value), digits), unit)
+    return _with_unit(given(factor * value, digits), unit)
+
+
 def force(kilonewtons: float, *, nothing: float = 0.0) -> str:
     """A force that was computed."""
-    return _with_unit(number(kilonewtons, nothing=nothing), "kN")
+    return amount(kilonewtons, "kN", nothing=nothing)
 
 
 def moment(kilonewton_metres: float, *, nothing: float = 0.0) -> str:
     """A moment that was computed."""
-    return _with_unit(number(kilonewton_metres, nothing=nothing), "kN·m")
+    return amount(kilonewton_metres, "kN·m", nothing=nothing)
 
 
 def displacement(metres: float, *, nothing: float = 0.0) -> str:
     """A displacement or an elongation."""
-    return _with_unit(number(_PER_METRE * metres, nothing=_PER_METRE * nothing), _LENGTH)
+    return amount(MOVED[1] * metres, MOVED[0], nothing=MOVED[1] * nothing)
 
 
 def length(metres: float, digits: int = _GIVEN_DIGITS) -> str:
     """A length that a person set."""
-    return _with_unit(given(_PER_METRE * metres, digits), _LENGTH)
+    return stated(_PER_METRE * metres, _LENGTH, digits)
 
 
 def place(metres: Iterable[float], digits: int = _GIVEN_DIGITS) -> str:
     """A point of the plane."""
-    return _with_unit(vector((_PER_METRE * part for part in metres), digits), _LENGTH)
+    return stated((_PER_METRE * part for part in metres), _LENGTH, digits)
 
 
 def vector(values: Iterable[float], digits: int = _GIVEN_DIGITS) -> str:

@@ -9,6 +9,8 @@ import sys
 import time
 from collections.abc import Sequence
 from contextlib import nullcontext, suppress
+from importlib.resources import files
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +22,7 @@ from pinjoint.components.field import Vector
 from pinjoint.components.language import language, tr
 from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
+from pinjoint.components.units import units_on_screen
 from pinjoint.components.view import MAGNIFICATIONS, View, magnified
 from pinjoint.documents import library, models
 from pinjoint.documents.autosave import Autosave, unkept
@@ -52,6 +55,7 @@ FAULT_SIZE = 20.0  # points, of the letters that say why there is no picture
 SELDOM = 1_000_000  # new objects, after which the garbage collector runs even while a person works
 MANY_NEW = 20_000  # new objects, from which on it runs while nothing happens
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")  # where Linux says what to draw on
+ICON = files("pinjoint.assets") / "icons" / "pinjoint-64.png"
 UNSEEN = ("offscreen", "dummy")  # drivers of SDL without a visible window
 
 Place = tuple[int, int, int, int]  # left, top, width and height of a window (points)
@@ -85,6 +89,8 @@ def open_window(
     magnification, place = preferred("magnification"), preferred_place()
     app = App(model, file, autosave, theme or preferred("theme"), Preparation(), magnification, place)
     app.session.lesson = lesson
+    if preferred("maximised"):
+        app.window.maximize()
     if lesson is None:
         app.session.scenes.begin(app.session)
     app.session.notice = trouble or app.session.notice
@@ -166,6 +172,7 @@ class App:
             size, position = place_on(displays, place, seen=pygame.display.get_driver() not in UNSEEN)
             at = pygame.WINDOWPOS_UNDEFINED if position is None else position
             self.window = pygame.Window("Pinjoint", size, at, resizable=True, allow_high_dpi=True)
+            self.window.set_icon(pygame.image.load(BytesIO(ICON.read_bytes()), ICON.name))
         except pygame.error as error:
             raise NoDisplay(str(error)) from None
         self.window.minimum_size = SMALLEST_SIZE
@@ -181,14 +188,14 @@ class App:
         self.session.autosave = self.autosave = autosave
         self.preparation = preparation
         if preparation is not None:
-            self.session.waits_for = preparation.waits_for
+            self.session.readiness = preparation
             preparation.open()
         self._chosen = self._choices()
         self._magnification = magnification
         self._clock, self._before = pygame.time.Clock(), time.perf_counter()
         self._follow_size()
         self.session.view.fit(model)
-        self._full_screen = False
+        self._full_screen = self._maximised = False
         self._known: OpenDocument | None = None
         self._boundary = Boundary(self.session)
 
@@ -212,7 +219,9 @@ class App:
             gc.set_threshold(*thresholds)
         with around("preferences"):  # where the window is, if somebody saw it and it does not fill the screen
             if not self._full_screen and pygame.display.get_driver() not in UNSEEN:
-                remember("window", [*self.window.position, *self.window.size])
+                remember("maximised", self.input.maximised)
+                if not self.input.maximised:
+                    remember("window", [*self.window.position, *self.window.size])
         if self.autosave is not None:
             with around(self.autosave.name):
                 self.autosave.close(self.session.documents)
@@ -335,10 +344,11 @@ class App:
 
     def _choices(self) -> dict[str, str]:
         """What the person has chosen; not what a script that is performed shows."""
-        view = self.session.view
-        shown = (
-            {} if self.session.footer is not None else {"language": language(), "convention": view.convention}
-        )
+        view, shown = self.session.view, dict[str, str]()
+        if self.session.footer is None:
+            shown = {"language": language(), "convention": view.convention}
+        if self.session.footer is None and self.session.course is None:  # lessons name the usual units
+            shown["units"] = units_on_screen()
         return {"theme": view.theme, **shown}
 
     def _follow_choices(self) -> None:
@@ -371,12 +381,15 @@ class App:
         return f"{100.0 * chosen:.0f} %"
 
     def toggle_full_screen(self) -> None:
-        """Fill the screen, or stop doing so."""
+        """Fill the screen, or be again as before."""
         self._full_screen = not self._full_screen
         if self._full_screen:
+            self._maximised = self.input.maximised
             self.window.set_fullscreen(desktop=True)
         else:
             self.window.set_windowed()
+            if self._maximised:
+                self.window.maximize()
 
     def screenshot(self, suffix: str = ".png") -> str:
         """Save the model as the window shows it, without panels and bars, in the working folder; returns the path.

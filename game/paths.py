@@ -68,7 +68,7 @@ class Target:
     @property
     def shown(self) -> tuple[str, float]:
         """The unit in which the fact is shown, and the factor to it from its own."""
-        unit, factor = self.field.shown
+        unit, factor = self.field.on_screen
         return self.field.unit_of(self.axis) if unit == self.field.unit else unit, factor
 
     def part(self, value: Any) -> Any:

@@ -17,7 +17,7 @@ from pinjoint.components.language import english
 from pinjoint.components.model import Model
 from pinjoint.documents.document import document
 from pinjoint.documents.format import ModelError
-from pinjoint.editor.context import Waiting
+from pinjoint.editor.context import Readiness, Waiting
 from pinjoint.elsewhere import UNITS, Elsewhere, Job, Work, in_a_line, problem_of, tell_slower
 from pinjoint.systems.base import Law, Phase, StepSystem, System
 from pinjoint.systems.collision.driven.neighbours import DRIVEN
@@ -60,7 +60,7 @@ def is_live(model: Model) -> bool:
     return max(model.rods.count, model.particles.count if model.rods.count == 0 else 0) <= LARGE
 
 
-class Preparation(System):
+class Preparation(System, Readiness):
     """Has another process compile what the open model runs with, then what it may come to need.
 
     Runs begin, interpreted, meanwhile, and go on with machine code. What would be too slow waits, and models on which
@@ -164,7 +164,6 @@ class Preparation(System):
     # --- what waits ----------------------------------------------------------------------------------
 
     def waits_for(self, simulation: Simulation) -> Waiting | None:
-        """What a simulation waits for; None if it can go on, interpreted or compiled."""
         self._needed[simulation] = None
         if self._asked is Compile.NEVER:
             return None

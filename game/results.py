@@ -9,10 +9,10 @@ import numpy as np
 
 from pinjoint.components.bent import MOMENT, deflections, inner_forces
 from pinjoint.components.derived import chord_rotation, on_axis, rigid_slopes
-from pinjoint.components.field import CM, ENDS
+from pinjoint.components.field import CM, ENDS, MOVED
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle
+from pinjoint.components.particle import Particle, supported
 from pinjoint.components.rod import (
     Rod,
     bearing,
@@ -76,7 +76,7 @@ def _of_rods(model: Model, length: Array, force: float, moment: float) -> Table:
         for side, key, title in ((1, "largest_moment", tr("M max")), (0, "least_moment", tr("M min"))):
             columns.append(_column(key, title, _KNM, moments[:, side], moment))
             columns.append(_column(f"{key}_at", tr("at x"), CM, places[:, side]))
-        columns.append(_column("deflection", tr("deflection"), CM, bows))
+        columns.append(_column("deflection", tr("deflection"), MOVED, bows))
     else:
         columns.append(_column("axial_force", "N", _KN, rods.axial_force, force))
     if has_strength(model):
@@ -87,15 +87,15 @@ def _of_rods(model: Model, length: Array, force: float, moment: float) -> Table:
 
 def _of_particles(model: Model, force: float, moment: float) -> Table:
     """Displacements and reactions; where rods bend, rotations and moments of clamps, too."""
-    particles, turns = model.particles, rigid_joints(model)
-    moved, reaction = particles.displacement, np.where(particles.fixed, particles.reaction, np.nan)
-    columns = _parts("displacement", tr("displacement"), "xy", CM, moved, _largest(moved))
+    particles, turns, held = model.particles, rigid_joints(model), supported(model)
+    moved, reaction = particles.displacement, np.where(held[:, :2], particles.reaction, np.nan)
+    columns = _parts("displacement", tr("displacement"), "xy", MOVED, moved, _largest(moved))
     if turns.any():
         rotation = np.where(turns, particles.rotation, np.nan)
         columns.append(_column("rotation", tr("rotation"), _MRAD, rotation))
     columns += _parts("reaction", tr("reaction"), "xy", _KN, reaction, force)
     if turns.any():
-        clamped = np.where(turns & particles.fixed_rotation, particles.reaction_moment, np.nan)
+        clamped = np.where(turns & held[:, 2], particles.reaction_moment, np.nan)
         columns.append(_column("reaction_moment", tr("moment"), _KNM, clamped, moment))
     return Table(tr("particle"), [as_said(Particle.noun, name) for name in particles.names], columns)
 
@@ -106,7 +106,7 @@ def _sums(model: Model, place: Array, bowed: float, force: float, moment: float)
     bowed: what the moment of the loads is more, by couples between ends and since forces act on bent axes.
     """
     particles, used, turns = model.particles, nodes(model), rigid_joints(model)
-    held = np.flatnonzero(used & particles.fixed.any(axis=1))
+    held = np.flatnonzero(used & supported(model)[:, :2].any(axis=1))
     first = int(held[0]) if len(held) else 0
     about = as_said(Particle.noun, particles.names[first]) if particles.count else ""
     rows = []

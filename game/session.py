@@ -17,6 +17,7 @@ from pinjoint.components.mistake import Mistake, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod, bends
 from pinjoint.components.settings import NO_DIAGRAMS, PAUSE, STATICS
+from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import View, lesson_share
 from pinjoint.components.wording import missing
 from pinjoint.documents.format import ModelError, missing_mods
@@ -24,7 +25,7 @@ from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.actions.typing import takes_typing, type_with_tool
 from pinjoint.editor.frame import Actions, Exaggerate, Frame, ShowView
 from pinjoint.editor.readouts import readouts
-from pinjoint.editor.routing import Press
+from pinjoint.editor.routing import BUTTONS, Press
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
 from pinjoint.editor.sliders import sliders_of
@@ -196,6 +197,8 @@ class Session(Headless):
             return
         pixel = self.view.pixel if pixel is None else _near(pixel)
         press = Press(self, key, pixel)
+        if key in BUTTONS and self.course is not None:
+            self.course.writes = False
         here = self.scene, self.view.menu is not None, self.view.help > 0, press.hit and press.hit.action
         if key == "double click" and self._clicked not in (None, here):
             return  # its first click led here, and the second is not meant for what is here
@@ -204,7 +207,7 @@ class Session(Headless):
         elif press.action is not None:
             self.notice, self._clicked = "", here if key == "click" else None
             self._record(key, pixel)
-            if self.scenes.time_passes and self.has_program(self.simulation):
+            if self.scenes.time_passes and self.readiness.lets(self.simulation):
                 self.document.get_ready()
             self.view.pressed = press.hit
             left = self._left_for_tools() if press.for_tools else ""
@@ -212,6 +215,22 @@ class Session(Headless):
                 self.act(press.action, press.at)
         elif self.scene in _SAID and (found := ACTIONS.at(PAUSE, key)) and not ACTIONS.at(self.scene, key):
             self.notice = tr(_SAID[self.scene], action=begun(tr(found[1].title)))
+
+        elif key == "click" and press.hit is not None and isinstance(press.hit.item, Tool):
+            self._say_why_not(press.hit.item)
+
+    def _say_why_not(self, tool: Tool) -> None:
+        """Say why a button does nothing now, as its key does, which would take a tool in hand, though."""
+        self.notice = ""
+        if tool.key and not ACTIONS[tool.action].hint:
+            self.press(tool.key)
+        binding = ACTIONS.offer(tool.action, self.scene)
+        if binding is not None and not self.notice:
+            scenes = listed([tr(scene) for scene in binding.scenes])
+            here = self.scene in binding.scenes
+            said = marked("{action}: there is nothing here yet that it could act on.")
+            said = said if here else marked("{action}: only in {scenes}.")
+            self.notice = tr(said, action=begun(tool.title), scenes=scenes)
 
     def _record(self, key: str, pixel: Vector | None) -> None:
         if self.recorder is not None:
@@ -333,8 +352,8 @@ class Session(Headless):
         if not (math.isfinite(x) and math.isfinite(y)):
             raise WrongValue("The point is ({x}, {y}); give finite coordinates, in m.", x=x, y=y)
         self.scenes.active.finish()
-        x, y = _near(self.focus[1].camera.to_pixels((x, y)).tolist())
-        self.focus[1].pointer = x, y
+        view = self.stages[0][1]
+        view.pointer = x, y = _near(view.camera.to_pixels((x, y)).tolist())
         return x, y
 
     def click(self, x: float, y: float, button: str = "click") -> None:

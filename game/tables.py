@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import written
+from pinjoint.components.field import on_screen
 from pinjoint.components.language import decimals
 
 Array = NDArray[np.float64]
@@ -21,10 +22,10 @@ _ABOVE = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 class Column:
     """Numbers of one kind below each other: with equal decimals, and a power of ten in the head if all are small.
 
-    key: what programs call it. values: in `plain_unit`, NaN where there is none. alike: else each number is written by
-    itself, as it stands beside a structure. summed: there is a sum at the foot; decimals are then such that what is written
-    adds up, if two more are enough. size: of the largest number of its kind; None: that in the column. least: of what is no
-    rounding.
+    key: what programs call it. values: given in a usual unit, and kept in that on screen, `plain_unit`; NaN where there is
+    none. alike: else each number is written by itself, as it stands beside a structure. summed: there is a sum at the foot;
+    decimals are then such that what is written adds up, if two more are enough. size: of the largest number of its kind;
+    None: that in the column. least: of what is no rounding.
     """
 
     def __init__(
@@ -40,11 +41,13 @@ class Column:
         size: float | None = None,
         least: float = 0.0,
     ) -> None:
-        values = np.where(np.abs(values) <= written.ROUNDING * least, 0.0, values)
+        unit, factor = on_screen(unit)
+        values = factor * np.where(np.abs(values) <= written.ROUNDING * least, 0.0, values)
+        digits = written.wanted(digits)
         self.key, self.values, self.plain_unit, self.summed = key, values, unit, summed
         total = float(np.nansum(values))
         greatest = max(float(np.nanmax(np.abs(values), initial=0.0)), abs(total) if summed else 0.0)
-        greatest = greatest if size is None else size
+        greatest = greatest if size is None else factor * size
         power = math.floor(math.log10(greatest)) if greatest > 0.0 else 0
         self.power = 0 if greatest >= _SMALL or not (greatest and alike) else 3 * math.floor(power / 3)
         self._scaled, self._total = values / 10.0**self.power, total / 10.0**self.power

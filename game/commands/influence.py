@@ -11,6 +11,7 @@ from pinjoint.commands.output import Row, aligned
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
+from pinjoint.components.particle import supported
 from pinjoint.systems.statics.equations import AXES
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion
@@ -71,8 +72,8 @@ def _influenced(model: Model, name: str) -> tuple[str, int, int]:
                 "{particle} has no rotation, because no rod that bends is rigidly joined to it; choose another one.",
                 particle=place,
             )
-        fixed = (*model.particles.fixed[row], model.particles.fixed_rotation[row])
-        kinds = ("reaction", "reaction_moment") if fixed[axis] else ("displacement", "rotation")
+        held = supported(model)[row, axis]
+        kinds = ("reaction", "reaction_moment") if held else ("displacement", "rotation")
         return kinds[axis == 2], row, axis
     return "axial_force", Unknown.named(model, name).element.row, 0
 

@@ -7,22 +7,31 @@ import os
 from collections.abc import Iterable, Sequence
 
 from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.components.field import FieldError
 from pinjoint.components.language import ENGLISH, LANGUAGES, speak
+from pinjoint.components.units import show_in
 from pinjoint.documents.preferences import preferred
 
-VARIABLE = "PINJOINT_LANGUAGE"
+VARIABLE, UNITS = "PINJOINT_LANGUAGE", "PINJOINT_UNITS"
 _OF_SYSTEM = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")  # the first that is set counts, as for gettext
 
 
 def speak_as_asked(words: Sequence[str]) -> list[str]:
     """Speak the language of the option --language CODE, which every command has, or else that of the person.
 
-    Returns the other words. Raises UsageError for a language that there is not.
+    Likewise numbers are shown in the units of --units. Returns the other words. Raises UsageError for what there is not.
     """
     speak(asked_language() or preferred("language") or language_of_system())
     parser = Parser(add_help=False, allow_abbrev=False)
     parser.add_argument("--language", metavar="CODE")
+    parser.add_argument("--units", default=asked_units())
     options, others = parser.parse_known_args(list(words))
+    if options.units:
+        try:
+            show_in(options.units)
+        except FieldError as error:
+            raise UsageError("--units {units}: {reason}", units=options.units, reason=str(error)) from None
+        os.environ[UNITS] = options.units
     if options.language is not None:
         if not (code := _known([options.language])):
             raise UsageError(
@@ -33,6 +42,11 @@ def speak_as_asked(words: Sequence[str]) -> list[str]:
         os.environ[VARIABLE] = code  # for this process and those that it starts
         speak(code)
     return others
+
+
+def asked_units() -> str:
+    """The units on screen that a person asked for this time, "" if none."""
+    return os.environ.get(UNITS, "")
 
 
 def asked_language() -> str:

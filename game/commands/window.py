@@ -9,15 +9,18 @@ from pathlib import Path
 from typing import Any
 
 from pinjoint.commands.arguments import Parser, UsageError, option
+from pinjoint.commands.language import asked_units
 from pinjoint.commands.options import ANSWERED, NO_DISPLAY
 from pinjoint.commands.output import writable, writing
 from pinjoint.commands.with_mods import in_use
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import LANGUAGES, tr
 from pinjoint.components.model import Model
+from pinjoint.components.units import PRESETS, show_in
 from pinjoint.components.wording import nearest
 from pinjoint.documents import models
 from pinjoint.documents.open_documents import ModelFile, file_of
+from pinjoint.documents.preferences import preferred
 from pinjoint.scripts import script
 from pinjoint.scripts.lines import Failure
 from pinjoint.systems.render.theme import theme_names
@@ -37,8 +40,10 @@ def _epilog() -> str:
     paragraphs = [
         tr(
             "Every command also takes --mods DIR, to load the mods in a folder; --no-mods, to leave out your mods;"
-            " --cores N, to use at most N processor cores; and --language {languages}.",
+            " --cores N, to use at most N processor cores; --language {languages}; and --units UNITS, for numbers on screen:"
+            " {presets}, or a list such as “m, N, mm displacement, 5 digits”.",
             languages="|".join(LANGUAGES),
+            presets=", ".join(map(repr, PRESETS)),
         ),
         tr("Bundled models: {names}", names=", ".join(models.bundled())),
     ]
@@ -90,6 +95,8 @@ def in_window(model: Model, file: ModelFile, theme: str | None = None, **further
         message = tr("The window needs pygame-ce, which cannot be imported: {error}. Install it.", error=error)
         raise UsageError(message, NO_DISPLAY) from None
     try:
+        if not asked_units():
+            show_in(preferred("units"))
         with in_use():
             return open_window(model, file, theme, **further)
     except NoDisplay as error:

@@ -27,6 +27,7 @@ Moment = tuple[int, float]  # of a run: the revision of its last edit, and the t
 _SHAPE = (  # on which the degrees depend
     *("rods.between", "rods.turning_shares"),
     *("particles.position", "particles.fixed", "particles.fixed_rotation"),
+    *("particles.support_springs", "particles.rotation_spring"),
 )
 UNBALANCED = 1e-5  # of the largest force: more is left over where nothing moves and there is no equilibrium
 LARGEST = 2000  # rods up to which theory is found without being asked for; more would take noticeable time

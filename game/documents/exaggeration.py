@@ -11,6 +11,7 @@ from pinjoint.components.field import Role
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.obstacles import obstacles
+from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.round_numbers import round_down
 from pinjoint.documents.assessment import LARGEST
 from pinjoint.systems.edit.arrows import extent
@@ -85,7 +86,7 @@ def _largest_expected(model: Model) -> float:
 def _spare(model: Model) -> int:
     """Rods, and their rigid ends, less free directions and rotations: below 0, a mechanism by its count."""
     particles, rods = model.particles, model.rods
-    held = rods.count + np.count_nonzero(rods.turning_shares > 0.0)
+    held = rods.count + np.count_nonzero(rods.turning_shares > 0.0) + np.count_nonzero(spring_stiffness(model))
     return int(held - np.count_nonzero(particles.mobility > 0.0) - np.count_nonzero(particles.turning > 0.0))
 
 

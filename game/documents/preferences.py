@@ -15,6 +15,7 @@ from typing import Any
 from platformdirs import user_config_path
 
 from pinjoint.components.language import LANGUAGES
+from pinjoint.components.units import PRESETS, USUAL
 from pinjoint.components.view import CONVENTIONS, MAGNIFICATIONS, TEXTBOOK
 from pinjoint.documents import models
 from pinjoint.systems.render.theme import theme_names
@@ -25,8 +26,10 @@ DEFAULT_THEME = "light"
 _CHOICES: Mapping[str, tuple[Any, Callable[[], Iterable[Any]]]] = {
     "theme": (DEFAULT_THEME, theme_names),
     "language": ("", lambda: LANGUAGES),
+    "units": (USUAL, lambda: PRESETS),
     "convention": (TEXTBOOK, lambda: CONVENTIONS),
     "magnification": (1.0, lambda: MAGNIFICATIONS),
+    "maximised": (False, lambda: (False, True)),
 }
 FARTHEST = 100_000  # points that a window is away from a corner of the display, or wide, at most
 

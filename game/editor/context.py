@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -45,6 +45,24 @@ class Waiting:
 
     seconds: float
     expected: float
+
+
+class Readiness:
+    """Which simulations are too large to go on before another process has compiled their program; without a window none.
+
+    awaited: the one that was to go on, and waits.
+    """
+
+    awaited: Simulation | None = None
+
+    def waits_for(self, simulation: Simulation) -> Waiting | None:
+        """What a simulation waits for; None if it can go on, interpreted or compiled."""
+        return None
+
+    def lets(self, simulation: Simulation) -> bool:
+        """True if a simulation can go on now; else it is awaited."""
+        self.awaited = None if self.waits_for(simulation) is None else simulation
+        return self.awaited is None
 
 
 # --- gestures --------------------------------------------------------------------------------------------
@@ -152,10 +170,6 @@ class Scene:
         """True while frames change something without a person's doing, as where time passes."""
         return context.scenes.time_passes and not context.simulation.halted
 
-    def focus(self, context: Context) -> tuple[Model, View]:
-        """The model that a pointer picks from, and its view."""
-        return context.model, context.view
-
     def scaled(self, context: Context) -> list[Settings]:
         """The settings of the models whose displacements are drawn to the scale that its slider sets."""
         return [context.model.settings]
@@ -180,7 +194,7 @@ class Scene:
         return {}
 
     def stages(self, context: Context) -> Sequence[Stage]:
-        """The models and forms that are shown, each in its view."""
+        """The models and forms that are shown, each in its view; a pointer picks from the first."""
         return [(context.model, context.view)]
 
     def hint(self, context: Context) -> str:
@@ -269,8 +283,7 @@ class Context:
     """The open documents with their runs, logs and files, what is seen of them, and what a person is doing with them.
 
     schedule: all systems. notice: the last sentence said. window, autosave: of a window; None without one.
-    waits_for: what a simulation waits for, None if it can go on. awaited: the one that is too large to go on before its
-    step program is compiled.
+    readiness: which simulations can go on.
     scenes: the mode, and its transitions. gesture: what is being drawn or dragged. footer: the strip below the picture while
     a script is shown in the window; then input is not for the scenes, and no time passes by itself.
     lesson: the script that a person asked for. course: the lessons.course.Course that a person is in.
@@ -287,8 +300,7 @@ class Context:
         self.notice = ""
         self.window: Any = None  # pinjoint.app.App
         self.autosave: Autosave | None = None
-        self.waits_for: Callable[[Simulation], Waiting | None] = lambda simulation: None
-        self.awaited: Simulation | None = None
+        self.readiness = Readiness()
         self.scenes = Scenes(scenes)
         self.view = view
         self.gesture: Gesture | None = None
@@ -352,11 +364,6 @@ class Context:
         status, self.notice = self.document.settle(factors, anew=anew)
         return status
 
-    def has_program(self, simulation: Simulation) -> bool:
-        """False while a large model waits for another process to compile its step program (see `awaited`)."""
-        self.awaited = None if self.waits_for(simulation) is None else simulation
-        return self.awaited is None
-
     def restart(self) -> None:
         """Go back to before it was run or settled, keeping all edits. Can be undone."""
         if not self.document.is_undeformed:
@@ -373,7 +380,7 @@ class Context:
         target = (whole if steps > 0 else begun) + steps  # a step that is under way is the first
         self._act_in_scene()
         self.document.note_beginning()
-        if not self.has_program(self.simulation):
+        if not self.readiness.lets(self.simulation):
             return False
         self.document.history.end_run()
         self.document.history.begin_run(single=True)
@@ -458,13 +465,11 @@ class Context:
         return self.scenes.active.busy(self)
 
     @property
-    def focus(self) -> tuple[Model, View]:
-        """The model that a pointer picks from, and its view."""
-        return self.scenes.active.focus(self)
-
-    @property
     def stages(self) -> Sequence[Stage]:
-        """All that is drawn: models and forms of the active scene, each in its view, toolbar and footer."""
+        """All that is drawn: models and forms of the active scene, each in its view, toolbar and footer.
+
+        A pointer picks from the first.
+        """
         stages = list(self.scenes.active.stages(self))
         if not self.scenes.active.covers(self):
             stages += [(self.lister.listing, self.view)] if self.view.table[0] else []

@@ -14,6 +14,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import language, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bearing
+from pinjoint.components.units import units_on_screen
 from pinjoint.components.view import Listing
 from pinjoint.results import Results
 from pinjoint.systems.input.actions import LIVE, PROPERTIES, TABLE
@@ -54,10 +55,16 @@ class Lister:
     def tables(self) -> dict[str, Table]:
         """All tables by name, up to date; empty while forces are not known."""
         known, model = self._context.view.forces_known, self._context.model
-        if self._of != (model.context, model.revision, known, language()):
+        if self._of != (model.context, model.revision, known, language(), units_on_screen()):
             found = Results.of(model if known else Model())
             self._tables = {"rods": found.rods, "particles": found.particles, "sums": found.sums}
-            self._of = model.context, model.revision, known, language()  # finding them may compute forces
+            self._of = (
+                model.context,
+                model.revision,
+                known,
+                language(),
+                units_on_screen(),
+            )  # finding them may compute forces
         return self._tables
 
     @property

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from pinjoint.components import written
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import CM, FieldError, Vector
+from pinjoint.components.field import FieldError, Vector, on_screen
 from pinjoint.components.free_body import Force, on_joint, on_rod
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
@@ -137,7 +137,7 @@ def pin_at(context: Context, hit: Handle | None, pixel: Vector) -> None:
 def retype(context: Context, pin: Pin, typed: str) -> None:
     """Take pinned numbers to a typed distance (cm), as far as it is a number."""
     with suppress(ValueError):
-        context.view.pin = replace(pin, distance=float(f"0{typed}") / CM[1], typed=typed)
+        context.view.pin = replace(pin, distance=float(f"0{typed}") / Rod.length.on_screen[1], typed=typed)
 
 
 # --- free bodies -----------------------------------------------------------------------------------------
@@ -163,18 +163,19 @@ def _equilibrium(context: Context) -> Iterator[Readout]:
         rest = (
             [(plural("and one more", "and {count} more", more), tr("select one to see it"))] if more > 0 else []
         )
-        yield Readout(tr("Free bodies: sums of forces (kN)"), (*shown, *rest))
+        yield Readout(tr("Free bodies: sums of forces ({unit})", unit=on_screen("kN")[0]), (*shown, *rest))
 
 
 def _parts(force: Force, forces: Sequence[Force]) -> str:
     """Both parts of a force; 0 where one is nothing beside the largest force on its body."""
     nothing = written.ROUNDING * max(max(abs(other.x), abs(other.y)) for other in forces)
-    x, y = (written.number(part, nothing=nothing) for part in (force.x, force.y))
+    unit, _ = on_screen("kN")
+    x, y = (written.amount(part, "kN", nothing=nothing, bare=True) for part in (force.x, force.y))
     turns = written.ROUNDING * max(abs(other.moment) for other in forces)
     if abs(force.moment) <= turns:
-        return f"x {x}   y {y} kN"
+        return f"x {x}   y {y} {unit}"
     moment = written.moment(force.moment)
-    return f"x {x}   y {y} kN   M {moment}" if max(abs(force.x), abs(force.y)) > nothing else f"M {moment}"
+    return f"x {x}   y {y} {unit}   M {moment}" if max(abs(force.x), abs(force.y)) > nothing else f"M {moment}"
 
 
 def _sums(forces: Sequence[Force]) -> Iterator[tuple[str, str]]:
@@ -186,7 +187,8 @@ def _sums(forces: Sequence[Force]) -> Iterator[tuple[str, str]]:
         parts[tr("ΣM about its start") if about_start else "ΣM"] = each
     largest = max((max(map(abs, terms)) for terms in parts.values() if terms), default=0.0)
     for title, terms in parts.items():
-        terms = [term if abs(term) > UNSEEN * largest else 0.0 for term in terms]
+        _, factor = on_screen("kN·m" if "M" in title else "kN")
+        terms = [factor * term if abs(term) > UNSEEN * largest else 0.0 for term in terms]
         lines = wrap(_BEFORE_SIGNS.sub("\\1\xa0", written.total(terms)), SUM)
         for number, line in enumerate(lines):
             yield "" if number else title, line.replace("\xa0", " ")
@@ -271,7 +273,7 @@ def _of_element(model: Model, handle: Handle, comparison: Comparison) -> Iterato
         return
     for quantity, place in sorted(comparison.of(handle.table, handle.row), key=itemgetter(1)):
         row, nothing = comparison.row(quantity, place), NOTHING * comparison.scale(quantity)
-        unit, factor = model.tables[handle.table].fields[row.quantity].shown
+        unit, factor = model.tables[handle.table].fields[row.quantity].on_screen
         rows = []
         for way, title in _WAYS.items():
             value, error = getattr(row, way), getattr(row, f"{way}_error", None)

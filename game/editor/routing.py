@@ -16,8 +16,8 @@ from pinjoint.systems.render.ui.menu import pointed_at
 BUTTONS = ("click", "ctrl+click", "double click", "drag", "ctrl+drag", "right click")
 WHEEL = ("wheel up", "wheel down")
 _AT_POINTER = (*BUTTONS, *WHEEL)
-DIGITS = frozenset("0123456789.,-+")
 _OF_TYPED = {"return": "accept typed", "backspace": "erase typed", "escape": "leave typed"}
+_OF_ANSWER = {"backspace": "erase answer", "delete": "clear answer", "ctrl+a": ""}
 
 
 class Press:
@@ -56,7 +56,7 @@ class Press:
         if self._key not in _AT_POINTER or view.menu is not None or view.help or scene.covers(context):
             return False
         in_form = self._key == "right click" and context.scene in FORMS
-        beside = in_form and not context.focus[1].covers(self._pixel)
+        beside = in_form and not context.stages[0][1].covers(self._pixel)
         return beside or view.strip.contains(self._pixel)
 
     def _meaning(self) -> tuple[str | None, Vector]:
@@ -111,8 +111,11 @@ class Press:
             return None
         if typed(context) and key in _OF_TYPED:
             return _OF_TYPED[key]
-        part = key in BEGINS or (typed(context) and (len(key) == 1 or key == "space"))
-        return "" if part else None
+        return "" if self._is_typed(begun=bool(typed(context))) else None
+
+    def _is_typed(self, *, begun: bool) -> bool:
+        """True if the key is part of a number or its unit; begun: its beginning was typed already."""
+        return self._key in BEGINS or (begun and (len(self._key) == 1 or self._key == "space"))
 
     def _to_lesson(self) -> str | None:
         """The action for the lesson that a person is in; "": it means nothing; None: it is not for it."""
@@ -122,6 +125,10 @@ class Press:
             return None
         if course.awaits_choice and key in "123456789" and len(key) == 1:
             return f"answer {key}"
-        if course.awaits_number and (key in DIGITS or (course.typed and key == "backspace")):
-            return "" if key in DIGITS else "erase answer"
+        if course.awaits_number and course.typed and key in _OF_ANSWER:
+            return _OF_ANSWER[key]
+        if course.writes and key == "escape":
+            return "clear answer"
+        if course.awaits_number and self._is_typed(begun=course.writes):
+            return ""
         return "check answer" if key == "return" and course.takes_return else None

@@ -90,7 +90,7 @@ def control_of(model: Model, key: int, slider: Slider) -> Control | None:
         return None
     aim, handle = found[0]
     field, value = model.tables[aim.table].fields[aim.field], _value(aim, handle)
-    unit, factor = field.shown
+    unit, factor = field.on_screen
     text = tr(field.absent) if value is None else _written(value * factor, unit)
     text = joined([text, _now(model, handle, aim.field)], ", ")
     share = None if value is None else slider.share_of(value)

@@ -109,7 +109,7 @@ def _of_selection(context: Context, pixel: Vector) -> Groups:
     yield [("properties", marked("properties")), *(results if particles or rods else ())]
     if particles:
         clamps = ("clamp", "guide y", "guide x", "hold rotation") if turns else ()
-        yield ["free", "pin", "hold y", "hold x", *clamps]
+        yield ["free", "pin", "hold y", "hold x", *clamps, "springs"]
     if particles and alone:
         yield [
             ("force", marked("load: click where its arrow ends")),
@@ -129,7 +129,7 @@ def _of_selection(context: Context, pixel: Vector) -> Groups:
             "weight along",
         ]
     if any(rod.bending_stiffness > 0.0 for rod in rods):
-        yield [*(["split"] if alone else ()), *DIVISIONS.values()]
+        yield ["end springs", *(["split"] if alone else ()), *DIVISIONS.values()]
     if rods:
         release = [("release", marked("release it in the force method"))] if alone else []
         yield [("toggle cable", marked("cable: tension only")), *release]
@@ -164,6 +164,7 @@ def _of_canvas(context: Context) -> Groups:
         ["fit", "new grid", "next grid", "toggle legend", "next theme", "next language"],
         [
             "environment",
+            "next units",
             "toggle full screen",
             "toggle help",
             "screenshot",

@@ -64,7 +64,7 @@ def show(context: Context, elapsed: float) -> None:
     view.steady = isinstance(context.gesture, Placing)
     if context.window is not None and context.footer is None:
         statics.share_frames(elapsed)
-    view.forces_known = solved or context.waits_for(context.simulation) is None
+    view.forces_known = solved or context.readiness.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
     lately = context.document.chronicle.told(elapsed) if context.scene in LIVE else ""
@@ -192,14 +192,14 @@ def follows(context: Context) -> bool:
 
 def _point_out(context: Context) -> None:
     """Say what the element under the pointer does now, in the view that shows it, and what the pinned place does."""
-    model, view = context.focus
-    found = model.tagged(Hovered) if isinstance(model, Model) else []
-    view.pointer = context.view.pointer
-    rows = told(model, found[0], forces_known=view.forces_known) if found else []
-    pointed = Readout(model.describe(found[0]), tuple(rows)) if rows else None
-    if found and isinstance(rod := found[0], Rod) and view.pointer is not None:
-        place = distance_at(model, view, rod, view.pointer)
-        pointed = pointed if place is None else along(model, rod, place)
+    model, view = context.stages[0]
+    view.pointer, pointed = context.view.pointer, None
+    if isinstance(model, Model) and (hovered := model.tagged(Hovered)):
+        rows = told(model, hovered[0], forces_known=view.forces_known)
+        pointed = Readout(model.describe(hovered[0]), tuple(rows)) if rows else None
+        if isinstance(rod := hovered[0], Rod) and view.pointer is not None:
+            place = distance_at(model, view, rod, view.pointer)
+            pointed = pointed if place is None else along(model, rod, place)
     view.pointed = context.view.pointed = pointed
     if (pin := context.view.pin) is not None:
         shown = pinned(context) is not None
@@ -208,9 +208,10 @@ def _point_out(context: Context) -> None:
 
 def _awaited(context: Context) -> Waiting | None:
     """What the run waits for, None if it does not (any more)."""
-    waited = context.waits_for(context.awaited) if context.awaited is not None else None
+    readiness = context.readiness
+    waited = readiness.waits_for(readiness.awaited) if readiness.awaited is not None else None
     if waited is None:
-        context.awaited = None
+        readiness.awaited = None
     return waited
 
 
@@ -285,7 +286,7 @@ def _state_word(context: Context, *, brief: bool) -> str:
         return context.document.statics.said
     if context.simulation.halted:
         return marked("at rest") if context.simulation.reason is StopReason.REST else marked("diverged")
-    if context.awaited is not None:
+    if context.readiness.awaited is not None:
         return marked("preparing")
     if not context.busy:
         moved = context.view.provisional and context.scene == PAUSE and not brief

@@ -9,6 +9,7 @@ import numpy as np
 from pinjoint.components.commands import Assign
 from pinjoint.components.field import MADE
 from pinjoint.components.model import Model
+from pinjoint.components.particle import supported
 from pinjoint.components.written import ROUNDING
 from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.external import External
@@ -82,15 +83,14 @@ def loaded(model: Model, released: Sequence[Unknown], amounts: Sequence[float]) 
 
 def still(copy: Model, whole: Model, state: SetState) -> Model:
     """A copy of a structure, perhaps without some of its rods, undeformed, with the forces of a state; none may run."""
-    particles, rods = copy.particles, copy.rods
+    rods = copy.rods
     here = [whole.rods[name].row for name in rods.names]
     copy.writable("particles.displacement")[...] = 0.0
     copy.writable("particles.rotation")[...] = 0.0
     if rods.bending_stiffness.any():
         copy.writable("rods.bending_stiffness")[...] *= _STIFF
     load = np.pad(External.of(copy).at(1.0), ((0, 0), (0, 1)))
-    held = np.column_stack([particles.fixed, particles.fixed_rotation])
-    counts = held & (np.abs(state.reaction) > ROUNDING * largest(state.axial_force))
+    counts = supported(copy) & (np.abs(state.reaction) > ROUNDING * largest(state.axial_force))
     reaction = np.where(counts, state.reaction, 0.0)
     told = {
         "particles.reaction": reaction[:, :2],
@@ -130,10 +130,12 @@ def _release(model: Model, unknown: Unknown) -> None:
     if unknown.of_bar:
         model.delete([model.rods[name]])
     elif unknown.of_end:
-        start, end = model.rods[name].hinged
-        model.rods[name].hinged = (start or axis == 0, end or axis == 1)
+        rod, kept = model.rods[name], np.arange(2) != axis
+        rod.hinged = tuple((np.array(rod.hinged) | ~kept).tolist())
+        rod.end_springs = tuple((np.array(rod.end_springs) * kept).tolist())
     elif axis == 2:
-        model.particles[name].fixed_rotation = False
+        model.particles[name].fixed_rotation, model.particles[name].rotation_spring = False, 0.0
     else:
-        x, y = model.particles[name].fixed
-        model.particles[name].fixed = (x and axis != 0, y and axis != 1)
+        particle, kept = model.particles[name], np.arange(2) != axis
+        particle.fixed = tuple((np.array(particle.fixed) & kept).tolist())
+        particle.support_springs = tuple((np.array(particle.support_springs) * kept).tolist())

@@ -14,7 +14,7 @@ from pinjoint.components.field import LARGEST, SMALLEST, Column, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle
+from pinjoint.components.particle import Particle, supported
 from pinjoint.components.rod import Rod, bends, rigid_joints
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.settings import DIAGRAMS
@@ -252,7 +252,7 @@ class Guide:
         if not isinstance(hit, Particle):
             return
         particle = self.model.particles[hit.name]
-        held = [axis for axis in (0, 1) if particle.fixed[axis]] + [2] * self._clamps(particle)
+        held = np.flatnonzero(supported(self.model)[particle.row, :2]).tolist() + [2] * self._clamps(particle)
         if not held:
             self.refusal = tr("{particle} has no support; click a rod or a support.", particle=particle.name)
         elif len(held) == 1:
@@ -270,7 +270,7 @@ class Guide:
 
     def _clamps(self, particle: Particle) -> bool:
         """True if a support holds rods against turning."""
-        return particle.fixed_rotation and bool(rigid_joints(self.model)[particle.row])
+        return bool(supported(self.model)[particle.row, 2] and rigid_joints(self.model)[particle.row])
 
     def pick_axis(self, axis: int) -> None:
         """Choose the direction of a support that holds several: 0: x, 1: y, 2: the moment of a clamp (part 2)."""

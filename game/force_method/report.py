@@ -14,6 +14,7 @@ from pinjoint.components import written
 from pinjoint.components.bent import AXIAL, MOMENT
 from pinjoint.components.language import listed, tr
 from pinjoint.components.model import Model
+from pinjoint.components.particle import supported
 from pinjoint.components.rod import nodes, rigid_joints
 from pinjoint.components.view import THESIS, Cut
 from pinjoint.figures import diagram_titles, figure, in_a_row, printed, signs
@@ -343,7 +344,7 @@ def _balance(model: Model, state: SetState) -> Iterator[tuple[str, list[float]]]
     """Sums of loads and reactions, of moments about the first support; each force is a term where they are few."""
     load, (x, y) = External.of(model).at(1.0), model.particles.position.T
     used = nodes(model)
-    held = np.flatnonzero(used & model.particles.fixed.any(axis=1))
+    held = np.flatnonzero(used & supported(model)[:, :2].any(axis=1))
     about = int(held[0]) if len(held) else 0
     for axis, name in enumerate(("ΣH", "ΣV", f"ΣM({model.particles.names[about]})")):
         terms: list[float] = []

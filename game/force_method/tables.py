@@ -12,6 +12,7 @@ from pinjoint.components import written
 from pinjoint.components.field import CM, ENDS
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
+from pinjoint.components.particle import supported
 from pinjoint.components.rod import bends, nodes
 from pinjoint.force_method import index
 from pinjoint.systems.statics.equations import AXES, Array, Rows, largest
@@ -150,16 +151,22 @@ class Tables:
         return Table(tr("rod"), self._names(rows), columns)
 
     def settlements(self) -> Table | None:
-        """What moved supports add to the gaps; None if none has moved."""
-        settled, particles = self.solution.work.settled, self.model.particles
+        """What moved and elastic supports add to gaps and flexibilities; None if there are none."""
+        work = self.solution.work
+        settled, terms, soft = work.settled, work.supports, work.supports.softness
         if not len(settled):
             return None
-        at = tuple(settled.T)
-        columns = [Column("c", "m, rad", np.column_stack([particles.displacement, particles.rotation])[at])]
-        for i, unit in enumerate(self.solution.units):
-            columns.append(Column(f"r{index(i + 1)}", "", unit.reaction[at]))
-            values = self.factor * self.solution.work.of_supports[i]
+        columns = [Column("c", "m, rad", work.moved)]
+        if soft.any():
+            columns.append(Column("1/k", "m/kN, rad/kN·m", soft))
+        for i in range(len(self.solution.units)):
+            columns.append(Column(f"r{index(i + 1)}", "", terms.unit[i, :, 0]))
+            values = self.factor * terms.of_load[i]
             columns.append(Column(f"−r{index(i + 1)}c", self.gap_unit(i), values, summed=True))
+        for i, j in _pairs(range(len(self.solution.units))) if soft.any() else ():
+            both = f"r{index(i + 1)}²/k" if i == j else f"r{index(i + 1)}r{index(j + 1)}/k"
+            values = self.factor * terms.of_units(i, j)
+            columns.append(Column(both, self.flexibility_unit(i, j), values, summed=True))
         return Table(tr("support"), self._supports(settled), columns)
 
     def sums(self, i: int) -> tuple[str, ...]:
@@ -179,14 +186,13 @@ class Tables:
 
     def _sum_of_gap(self, i: int) -> str:
         work = self.solution.work
-        free = work.axial.of_free + work.bending.of_free
-        ways = (work.bending.of_load, work.axial.of_load, free, work.of_supports)
-        found = _sum(self.factor * float(way[i].sum()) for way in ways)
+        parts = [work.bending.of_load, work.axial.of_load, work.axial.of_free + work.bending.of_free]
+        found = _sum(self.factor * float(part[i].sum()) for part in (*parts, work.supports.of_load))
         return f"δ{index(i + 1, 0)} = {found} {self.gap_unit(i)}"
 
     def _sum_of_units(self, i: int, j: int) -> str:
         work = self.solution.work
-        parts = (terms.of_units(i, j) for terms in (work.bending, work.axial))
+        parts = (terms.of_units(i, j) for terms in (work.bending, work.axial, work.supports))
         found = _sum(self.factor * float(part.sum()) for part in parts)
         same = "" if i == j else f" = δ{index(j + 1, i + 1)}"
         return f"δ{index(i + 1, j + 1)}{same} = {found} {self.flexibility_unit(i, j)}"
@@ -212,9 +218,8 @@ class Tables:
 
     def reactions(self, most: int = _SHOWN) -> Table:
         """Likewise R = R₀ + Σ X r of all supports; those released have their unknown."""
-        particles, used = self.model.particles, nodes(self.model)
-        fixed = np.column_stack([particles.fixed, particles.fixed_rotation & self.bends])
-        places = np.argwhere(fixed & used[:, None])
+        held = supported(self.model) & [True, True, self.bends]
+        places = np.argwhere(held & nodes(self.model)[:, None])
         unit = "kN, kN·m" if self.bends else "kN"
         return self._superposed(
             "R",
@@ -281,5 +286,5 @@ def _sum(terms: Iterable[float]) -> str:
     return text.rpartition(" ")[2] if text.count(" ") == 2 else text
 
 
-def _pairs(which: Sequence[int]) -> list[tuple[int, int]]:
+def _pairs(which: Iterable[int]) -> list[tuple[int, int]]:
     return [(i, j) for i in which for j in which if i <= j]

@@ -34,6 +34,10 @@ action("check answer", "f5", "check the task of the lesson", while_drawing=True)
 def _next(session: Session, pixel: Vector) -> None:
     """Go on: to the next task, the next lesson, or, after the last, to the start page."""
     course = _course(session)
+    if not course.accepted:
+        raise Refusal(
+            "This task is not done yet: F5 checks it, F7 shows how it is done. A dot leads to any task."
+        )
     try:
         if course.next():
             return
@@ -79,6 +83,7 @@ def _leave(session: Session, pixel: Vector) -> None:
 
 
 action("erase answer", while_drawing=True)(lambda session, pixel: _course(session).erase())
+action("clear answer", while_drawing=True)(lambda session, pixel: _course(session).erase(whole=True))
 for _number in range(MOST_ANSWERS):
     action(f"answer {_number + 1}", while_drawing=True)(
         lambda session, pixel, number=_number: _course(session).choose(number)

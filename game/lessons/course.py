@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from decimal import DecimalException
 from typing import Any
 
+from pinjoint.components.field import FieldError
 from pinjoint.components.language import decimals, joined, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.settings import PAUSE, STATICS
 from pinjoint.components.toolbar import Tool
+from pinjoint.components.units import USUAL, show_in, units_on_screen
 from pinjoint.components.view import Card, Shape, View
 from pinjoint.documents.document import document
 from pinjoint.documents.models import ModelError, load
@@ -20,28 +23,32 @@ from pinjoint.lessons.judging import Answer, Document, Verdict, filled, judge, n
 from pinjoint.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Lesson, Line, Task
 from pinjoint.scripts.lines import play_line
 from pinjoint.scripts.script import ScriptError
+from pinjoint.systems.edit.typed import BEGINS, MOST
+from pinjoint.systems.edit.typed import number as number_of
 
 RIGHT, WRONG, HINT = "right", "wrong", "hint"  # moods of what is said
-IN_NUMBERS = frozenset("0123456789.,-−+")  # not e, which is a key
 MOST_LINES = 40  # by which a card is scrolled
-LONGEST = 16  # characters of a number that is typed
+_UNITS = {"statics.frequency": "Hz", "time": "s"}  # of what has no Field
 
 
 class Course:
     """A lesson that a person is in.
 
     view: of its card, in the part of the window that it takes. at: the number of the task, from 0. accepted: it is done.
-    answer: the choice that was made, or what was typed. home: the mode from which it was begun.
+    choice, typed: the choice that was made, or what was typed. writes: keys are part of that, until it is checked or
+    something is clicked. home, units: the mode and the units on screen from which it was begun.
     """
 
     def __init__(self, session: Any, lesson: Lesson) -> None:
         self._session, self.lesson = session, lesson
+        self.units = units_on_screen() if session.course is None else session.course.units
+        show_in(USUAL)  # which the texts of lessons name
         self.home = session.scenes.hub if session.course is None else session.course.home
         self.view = View()
         self.at = 0
         self.accepted = False
         self.choice: str | None = None
-        self.typed = ""
+        self.typed, self.writes = "", False
         self.said = ""
         self.mood = ""
         self.first = 0
@@ -115,12 +122,13 @@ class Course:
         self._forget()
         session.select()
         self._begun = document(session.model)
-        self._unit = said_of(session, task.asked[0])[0] if task.kind == NUMBER else ""
+        path = task.asked[0] if task.kind == NUMBER else ""
+        self._unit = said_of(session, path)[0] or _UNITS.get(path, "") if path else ""
         offer_tools(session)
 
     def _forget(self) -> None:
         """Begin to answer anew."""
-        self.accepted, self.choice, self.typed = False, None, ""
+        self.accepted, self.choice, self.typed, self.writes = False, None, "", False
         self.said = self.mood = self._scored = ""
         self._hints = self.first = 0
         self._shown = False
@@ -184,18 +192,20 @@ class Course:
             self.choice, self.said, self.mood = self.task.choices[number].text, "", ""
 
     def type(self, text: str) -> None:
-        """Type a part of a number."""
-        kept = "".join(character for character in text if character in IN_NUMBERS)
+        """Type a part of a number or of its unit; what begins as no number is passed over."""
         before = "" if self.mood == WRONG else self.typed  # after a wrong answer, another one begins
-        self.typed = (before + kept)[:LONGEST]
+        if (before and self.writes) or text[:1] in BEGINS:
+            self.typed, self.writes = (before + text)[:MOST], True
+            self.said = self.mood = ""
+
+    def erase(self, *, whole: bool = False) -> None:
+        """Take back the last character that was typed, or all."""
+        self.typed = "" if whole else self.typed[:-1]
+        self.writes = bool(self.typed)
         self.said = self.mood = ""
 
-    def erase(self) -> None:
-        """Take back the last character that was typed."""
-        self.typed = self.typed[:-1]
-
     def _given(self) -> Answer:
-        """The answer that stands there now. Raises ValueError if it is no number."""
+        """The answer that stands there now. Raises DecimalException if it is no number, FieldError if in another unit."""
         task = self.task
         if task.kind == CHOICES:
             return self.choice
@@ -203,10 +213,7 @@ class Course:
             return self._selected()
         if not self.typed:
             return None
-        number = float(self.typed.replace(",", ".").replace("−", "-"))
-        if not math.isfinite(number):
-            raise ValueError
-        return number
+        return number_of(self.typed, self._unit, self._unit)
 
     def _selected(self) -> tuple[str, ...]:
         """The names of the selected elements."""
@@ -218,9 +225,14 @@ class Course:
             return
         try:
             answer = self._given() if self.task.kind != UNTIL else None
-        except ValueError:
+        except DecimalException:
             self.mood, self.said = WRONG, tr("'{text}' is not a number; type one such as 2.5.", text=self.typed)
             return
+        except FieldError as error:
+            self.mood, self.said = WRONG, tr("The answer {reason}.", reason=str(error))
+            return
+        finally:
+            self.writes = False
         self._judge(answer)
 
     def _judge(self, answer: Answer, *, aloud: bool = True) -> None:
@@ -377,6 +389,8 @@ def take_up_lesson(session: Any) -> None:
 def leave_lesson(session: Any) -> None:
     """Leave the lesson for the document that was open before it."""
     home = PAUSE if session.course is None else session.course.home
+    if session.course is not None:
+        show_in(session.course.units)
     _seat(session, None)
     session.scenes.request_from_pause(PAUSE)
     session.scenes.apply(session)

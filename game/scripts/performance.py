@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, spoken, tr
+from pinjoint.components.units import shown_in
 from pinjoint.components.view import Page, Status, View
 from pinjoint.documents import library
 from pinjoint.documents.open_documents import ModelFile
@@ -67,7 +68,7 @@ class Performance:
         The script saves in a folder of its own; afterwards its models count as unsaved work.
         """
         apart = nullcontext() if self._script.has_data else library.data_in()
-        with apart as folder, spoken(self._script.language):
+        with apart as folder, spoken(self._script.language), shown_in(self._script.units):
             failures = self._perform_all()
         for document in self._screen.session.documents:
             if document.file.path is not None and folder in document.file.path.parents:
@@ -137,7 +138,7 @@ class Performance:
         at = entry.get("over") or entry.get("click") or (entry.get("drag") or [None])[0]
         if not isinstance(at, list) or len(at) != 2:
             return None
-        x, y = self._screen.session.focus[1].camera.to_pixels((float(at[0]), float(at[1]))).tolist()
+        x, y = self._screen.session.stages[0][1].camera.to_pixels((float(at[0]), float(at[1]))).tolist()
         return x, y
 
     def _watch(self, entry: Mapping[str, Any]) -> None:
@@ -175,7 +176,7 @@ class Performance:
     def _wait_for_program(self) -> None:
         """Let frames pass while the step program is compiled."""
         session = self._screen.session
-        while not self._ended and not session.has_program(session.simulation):
+        while not self._ended and not session.readiness.lets(session.simulation):
             self._frame()
 
     def _watch_time(self) -> int:

@@ -12,6 +12,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import ENGLISH, joined, language, spoken, tr
 from pinjoint.components.settings import STATICS
+from pinjoint.components.units import USUAL, shown_in, units_on_screen
 from pinjoint.components.wording import is_broken
 from pinjoint.documents.format import ModelError
 from pinjoint.scripts.lines import Failure, play_line
@@ -64,7 +65,7 @@ def _loaded_mods() -> dict[str, str]:
 def play(script: Script, session: Session | None = None) -> list[Failure]:
     """Play all lines in a session (None: that of the header); returns failed expectations. Raises ScriptError."""
     session = session or session_of(script)
-    with spoken(script.language):
+    with spoken(script.language), shown_in(script.units):
         return [
             failure
             for number, entry in script.lines[1:]
@@ -83,7 +84,8 @@ class Recorder:
         self._session = session
         session.recorder = self
         spoken = {"language": language()} if language() != ENGLISH else {}
-        self._write({**HEADER, "model": model, "mods": _loaded_mods(), **spoken})
+        units = {"units": units_on_screen()} if units_on_screen() != USUAL else {}
+        self._write({**HEADER, "model": model, "mods": _loaded_mods(), **spoken, **units})
         self.resize()
         if session.scene == STATICS:  # in which a window begins
             self._write({"action": "toggle statics"})

@@ -3,7 +3,8 @@
 The first line is a header, {"format": "pinjoint session", "version": 1, "model": "isostatic"} (a bundled
 name, a path relative to the script, or a whole document; left out: an empty model), perhaps with a "title" and
 a "description", the "mods" that it was recorded with, {"wind": "1.0"}, without which it is not played, and the
-"language" of a recording, "pt", unless that is English. Every further line does one thing:
+"language" of a recording, "pt", unless that is English, and the "units" on screen,
+unless these are the usual ones. Every further line does one thing:
 
     {"press": "space"}                          a key; "over": [x, y] first moves the pointer there (m)
     {"click": [1.0, 1.0]}                       at a point of the model (m); "button": "ctrl+click"
@@ -38,13 +39,15 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
+from pinjoint.components.field import FieldError
 from pinjoint.components.language import ENGLISH, LANGUAGES, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.settings import STATICS
+from pinjoint.components.units import USUAL, shown_in
 from pinjoint.components.wording import as_json, cut, remedy
 
 HEADER = {"format": "pinjoint session", "version": 1}
-_HEADER_KEYS = (*HEADER, "model", "title", "description", "mods", "language")
+_HEADER_KEYS = (*HEADER, "model", "title", "description", "mods", "language", "units")
 EMPTY = {"format": "pinjoint model", "version": 1}
 NEW = EMPTY | {"settings": {"opens_in": STATICS}}  # on which a person draws a structure
 # Folders of bundled lessons; those to do ask a student for something.
@@ -97,6 +100,7 @@ class Script:
         self.mods: dict[str, str] | None = header.get("mods")
         recorded = any("pixel" in entry for _, entry in self.lines)
         self.language = header.get("language", ENGLISH if recorded else "")
+        self.units = header.get("units", USUAL)
         self.title, self.description = (str(header.get(key, "")) for key in ("title", "description"))
 
     def _check_header(self, header: Mapping[str, Any]) -> None:
@@ -114,6 +118,11 @@ class Script:
             form, value = '{"wind": "1.0"}', as_json(mods)
             said = tr("mods is {value}; write names and versions, such as {form}.", value=value, form=form)
             raise self.error(1, said)
+        try:
+            with shown_in(header.get("units", USUAL)):
+                pass
+        except (FieldError, TypeError, AttributeError) as error:
+            raise self.error(1, error) from None
         if (code := header.get("language", "")) not in ("", *LANGUAGES):
             known = ", ".join(LANGUAGES)
             said = tr("the language is {code}; write one of {languages}.", code=as_json(code), languages=known)
@@ -127,6 +136,7 @@ class Script:
     def of_lines(cls, title: str, lines: Iterable[tuple[int, Mapping[str, Any]]]) -> Script:
         """A script of some lines of another one, which is not in a file of its own."""
         made = cls.__new__(cls)
+        made.units = USUAL
         made.path, made.title, made.description, made.mods, made.has_data = Path(), title, "", None, True
         made.lines = [(0, dict(HEADER)), *((number, dict(entry)) for number, entry in lines)]
         return made

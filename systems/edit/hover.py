@@ -37,7 +37,9 @@ class Hover(System):
 
     def process(self, frame: Any) -> None:
         """Move the mark if the pointer is over something else now."""
-        model, view = frame.session.focus
+        model, view = frame.session.stages[0]
+        if not isinstance(model, Model):  # boxes that cover it
+            return
         pointer = frame.session.view.pointer
         shown = view.canvas, pointer, view.menu, view.sliders
         if self._looked == (model.context, model.revision, view.camera, *shown):

@@ -126,5 +126,5 @@ def _value(field: Field[Any], part: str, text: str) -> Any:
         return None
     if field.dtype is str or part == KIND:
         return text
-    number = inside(text, field.unit, field.shown[0])
+    number = inside(text, field.unit, field.on_screen[0])
     return int(number) if field.dtype is int and number == number.to_integral_value() else float(number)

@@ -17,7 +17,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.load import HISTORIES, Load
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle
+from pinjoint.components.particle import Particle, supported
 from pinjoint.components.rod import Rod, rigid_joints
 from pinjoint.components.settings import Environment, Settings
 from pinjoint.systems.forms.typing import YES_NO, Typing
@@ -40,7 +40,10 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
         *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.density, Rod.thermal_expansion),
         *(Rod.tensile_strength, Rod.compressive_strength, Rod.tension_only),
     ),
-    marked("Supports and joints"): (*(Particle.fixed, Particle.fixed_rotation, Rod.hinged, Rod.end_springs),),
+    marked("Supports and joints"): (
+        *(Particle.fixed, Particle.fixed_rotation, Particle.support_springs, Particle.rotation_spring),
+        *(Rod.hinged, Rod.end_springs),
+    ),
     marked("Loads"): (
         *(Particle.force, Particle.moment, Particle.acceleration),
         *(Rod.distributed_force, Rod.temperature_change, Rod.temperature_gradient),
@@ -58,7 +61,8 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
 _OF_BENDING = (  # what means nothing to rods that do not bend, and where none turns a particle
     *(Rod.hinged, Rod.end_springs, Rod.temperature_gradient, Rod.bending_damping),
     *(Load.moment, Particle.moment),
-    *(Particle.rotation, Particle.angular_velocity, Particle.fixed_rotation, Particle.prescribed_inertia),
+    *(Particle.rotation, Particle.angular_velocity, Particle.fixed_rotation, Particle.rotation_spring),
+    Particle.prescribed_inertia,
 )
 _NUMBERS = (float, int)
 _EDITABLE = (*_NUMBERS, bool, str)
@@ -144,7 +148,7 @@ def _turn(model: Model, kind: type[Handle], rows: NDArray[np.intp]) -> bool:
     if kind is Load:
         return bool(rigid_joints(model)[model.loads.on[rows]].any() or model.loads.moment[rows].any())
     particles = model.particles
-    given = particles.fixed_rotation | (particles.moment != 0.0) | ~np.isnan(particles.prescribed_inertia)
+    given = supported(model)[:, 2] | (particles.moment != 0.0) | ~np.isnan(particles.prescribed_inertia)
     return kind is Particle and bool((rigid_joints(model) | given)[rows].any())
 
 
@@ -208,7 +212,7 @@ def _box(
         text=text,
         opened=text,
         section=subject.section,
-        unit=field.shown[0],
+        unit=field.on_screen[0],
         explanation=field.doc,
         elements=subject.elements,
         accepts=accepts,
@@ -251,7 +255,7 @@ def _written(field: Field[Any], value: Any) -> str:
         return YES_NO[int(value)]
     if field.dtype is str:
         return str(value)
-    return _written_number(float(value), field.shown[1])
+    return _written_number(float(value), field.on_screen[1])
 
 
 def _written_number(value: float, factor: float) -> str:

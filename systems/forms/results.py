@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from pinjoint.components import written
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, Station, farthest
-from pinjoint.components.field import CM, Field, Role
+from pinjoint.components.field import CM, MOVED, Field, Role, on_screen
 from pinjoint.components.form import Reading
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import marked, tr, tr_in
 from pinjoint.components.load import CONSTANT, Load, SpanLoad, factor_now
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle
+from pinjoint.components.particle import Particle, supported
 from pinjoint.components.rod import Rod, bearing, bends_unchecked, rigid_joints, utilisation
 from pinjoint.components.view import Readout
 
@@ -76,9 +76,9 @@ def along(model: Model, rod: Rod, distance: float) -> Readout:
     scales = (rods.end_axial_force, "kN"), (rods.shear, "kN"), (rods.largest_moment[:, 0], "kN·m")
     of = dict(zip((AXIAL, SHEAR, MOMENT), scales, strict=True))
     rows = [(name, _number(there.forces[name], *of[name])) for name in of]
-    moved, turned = CM[1] * there.moved, _MRAD[1] * rods.end_rotation
-    column = np.append(CM[1] * model.particles.displacement, moved)
-    moved_so_far = _vector("", moved.tolist(), column, CM[0], Particle.displacement).text
+    moved, turned = MOVED[1] * there.moved, _MRAD[1] * rods.end_rotation
+    column = np.append(MOVED[1] * model.particles.displacement, moved)
+    moved_so_far = _vector("", moved.tolist(), column, MOVED[0], Particle.displacement).text
     rows.append((tr("displacement"), moved_so_far))
     rows.append((tr("rotation"), _number(_MRAD[1] * there.rotation, turned, _MRAD[0])))
     place = written.length(there.distance, written.DIGITS)
@@ -181,18 +181,18 @@ def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]
 
 def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]:
     particles = columns.model.particles
-    moved, reactions = CM[1] * particles.displacement, columns("particles.reaction")
+    moved, reactions = MOVED[1] * particles.displacement, columns("particles.reaction")
     if len(rows) == 1:
         (row,) = rows
-        yield _vector(tr("displacement"), moved[row], moved, CM[0], Particle.displacement)
+        yield _vector(tr("displacement"), moved[row], moved, MOVED[0], Particle.displacement)
         turns = rigid_joints(columns.model)[row]
         if turns:
             angle = _MRAD[1] * particles.rotation
             yield _result(tr("rotation"), _number(angle[row], angle, _MRAD[0]), Particle.rotation)
-        held = particles.fixed[row]
-        if held.any():
+        *held, clamped = supported(columns.model)[row].tolist()
+        if any(held):
             yield _vector(tr("reaction"), reactions[row], reactions, "kN", Particle.reaction, held)
-        if turns and particles.fixed_rotation[row]:
+        if turns and clamped:
             moment = columns("particles.reaction_moment")
             yield _result(tr("reaction moment"), _number(moment[row], moment, "kN·m"), Particle.reaction_moment)
         force = columns("particles.applied_force")
@@ -200,7 +200,7 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading
         speed = np.hypot(*particles.velocity.T)
         yield _result(tr("speed"), _number(speed[row], speed, "m/s"), Particle.velocity)
         return
-    if particles.fixed[rows].any():
+    if supported(columns.model)[rows, :2].any():
         total = reactions[rows].sum(axis=0)
         yield _vector(tr("sum of reactions"), total, reactions, "kN", Particle.reaction)
 
@@ -212,14 +212,14 @@ def _largest_displacement(
     rods = rods[model.rods.bending_stiffness[rods] > 0.0]
     if not len(rods) and len(particles) < 2:
         return
-    moved = CM[1] * np.hypot(*model.particles.displacement.T)
+    moved = MOVED[1] * np.hypot(*model.particles.displacement.T)
     joints = np.concatenate([particles, model.rods.between[rods].ravel()]).astype(np.intp)
     most = joints[np.argmax(moved[joints])]
     largest, whose = moved[most], model.particles.names[most]
-    inside = CM[1] * farthest(model, rods)[0]
+    inside = MOVED[1] * farthest(model, rods)[0]
     if len(rods) and inside.max() > largest * (1.0 + written.ROUNDING):
         largest, whose = inside.max(), model.rods.names[rods[np.argmax(inside)]]
-    text = f"{_number(largest, np.append(moved, inside), CM[0])} ({whose})"
+    text = f"{_number(largest, np.append(moved, inside), MOVED[0])} ({whose})"
     yield _result(tr("largest displacement"), text, Particle.displacement)
 
 
@@ -230,12 +230,14 @@ def _of_loads(model: Model, particle: int) -> Iterator[Reading]:
     """What the loads on a particle are now, of those that vary beside their force at factor 1."""
     for row in np.flatnonzero(model.loads.on == particle).tolist():
         load = model.loads[row]
-        text = f"{written.vector(load.force)} kN"
+        text = written.stated(load.force, "kN")
         if load.moment:
-            text += f", {written.given(load.moment)} kN·m"
+            text += f", {written.stated(load.moment, 'kN·m')}"
         if load.history["kind"] != CONSTANT["kind"]:
             now = factor_now(model, load.history) * model.loads.force[row]
-            text = tr("{now} of {whole}", now=written.vector(now, written.DIGITS), whole=text)
+            text = tr(
+                "{now} of {whole}", now=written.vector(on_screen("kN")[1] * now, written.DIGITS), whole=text
+            )
         yield _result(model.describe(load), text, Load.force)
 
 
@@ -244,12 +246,12 @@ def _of_span_loads(model: Model, rod: Rod) -> Iterator[Reading]:
     for load in model.span_loads:
         if load.rod == rod.row:
             start, end = (written.length(x) for x in (load.start, load.end or rod.original_length))
-            parts = [f"{written.vector(load.force)} kN"] if any(load.force) else []
-            parts += [f"{written.given(load.moment)} kN·m"] if load.moment else []
+            parts = [written.stated(load.force, "kN")] if any(load.force) else []
+            parts += [written.stated(load.moment, "kN·m")] if load.moment else []
             parts = [tr("{load} at {place}", load=", ".join(parts), place=start)] if parts else []
-            spread = [written.vector(value) for value in (load.start_intensity, load.end_intensity)]
+            spread = [written.stated(value, "kN/m") for value in (load.start_intensity, load.end_intensity)]
             if any(load.start_intensity) or any(load.end_intensity):
-                parts.append(f"{' … '.join(dict.fromkeys(spread))} kN/m, {start} … {end}")
+                parts.append(f"{' … '.join(dict.fromkeys(spread))}, {start} … {end}")
             yield _result(model.describe(load), "; ".join(parts), SpanLoad.force)
 
 
@@ -258,7 +260,7 @@ def _of_others(model: Model, handle: Handle) -> Iterator[Reading]:
     table = model.tables[handle.table]
     for field in table.fields_in(Role.DOCUMENT):
         value = getattr(handle, field.name)
-        unit, factor = field.shown
+        unit, factor = field.on_screen
         if field.dtype is float and value is not None:
             parts = np.multiply(value, factor)
             text = written.vector(parts) if field.shape else written.given(float(parts))
@@ -283,17 +285,17 @@ def _vector(
 ) -> Reading:
     """The components that are to be shown."""
     parts = [
-        f"{axis} {_number(value, column)}"
+        f"{axis} {_number(value, column, unit, bare=True)}"
         for axis, value, wanted in zip(axes, values, shown, strict=True)
         if wanted
     ]
-    return _result(title, f"{'   '.join(parts)} {unit}", field)
+    return _result(title, f"{'   '.join(parts)} {on_screen(unit)[0]}", field)
 
 
-def _number(value: float, column: Any, unit: str = "") -> str:
-    """A value with its unit; 0 where it is nothing beside the largest in the model."""
+def _number(value: float, column: Any, usual: str, *, bare: bool = False) -> str:
+    """A value in a usual unit, with that on screen; 0 where it is nothing beside the largest in the model."""
     if math.isnan(value):
         return "—"
     largest = np.abs(column).max(initial=0.0)
     nothing = max(written.ROUNDING * largest, RESIDUAL)
-    return f"{written.number(float(value), nothing=nothing)} {unit}".rstrip()
+    return written.amount(float(value), usual, nothing=nothing, bare=bare)

@@ -52,7 +52,7 @@ def _awaited(looks: int) -> list[pygame.event.Event]:
 class PygameInput(System):
     """Turns events into pressed keys and buttons; `closed` once the window's close icon was clicked.
 
-    density: pixels per point of the window.
+    density: pixels per point of the window. maximised: it fills the desktop, between its bars.
     """
 
     name = "input.pygame"
@@ -60,7 +60,7 @@ class PygameInput(System):
     writes = ("pressed", "view")
 
     def __init__(self) -> None:
-        self.closed = False
+        self.closed = self.maximised = False
         self.density = 1.0
         self._held: set[int] = set()  # keys that are down
         self._grip: tuple[str, Vector] | None = None  # the kind of click and where, while the button is down
@@ -75,7 +75,7 @@ class PygameInput(System):
     def process(self, frame: Any) -> None:
         """Collect the events since the last frame; sleep a little if nothing can happen without one."""
         session, events = frame.session, pygame.event.get()
-        waiting = session.awaited is not None
+        waiting = session.readiness.awaited is not None
         if not events and session.footer is None and (waiting or not session.busy):
             events = _awaited(WAITING_LOOKS if waiting else IDLE_LOOKS)
         for event in events:
@@ -88,6 +88,8 @@ class PygameInput(System):
         view, ratio = frame.session.view, self.density
         if event.type in (pygame.QUIT, pygame.WINDOWCLOSE):
             self.closed = True
+        elif event.type in (pygame.WINDOWMAXIMIZED, pygame.WINDOWRESTORED):
+            self.maximised = event.type == pygame.WINDOWMAXIMIZED
         elif event.type == pygame.KEYDOWN:
             self._press(event, frame)
         elif event.type == pygame.TEXTINPUT:

@@ -11,7 +11,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.systems.physics.bending import free_coordinates, stiffness_matrix
 from pinjoint.systems.physics.pace import loaded_mode
-from pinjoint.systems.physics.spectrum import operator_of
+from pinjoint.systems.physics.spectrum import RodOperator, highest_sprung
 
 SMALL = 200  # rods up to which the modes of a model are found in no time, and steps cost next to nothing
 AFFORDABLE = 5000  # rods up to which error control keeps up with a person's eye
@@ -39,7 +39,7 @@ def _stiffness(model: Model) -> float:
     lowest, highest = _of_all_modes(model) if rods.count <= SMALL else _of_loaded_mode(model)
     if highest == 0.0:
         return 0.0
-    fastest = max(math.sqrt(highest), operator_of(model, rods.damping, rods.end_damping).gershgorin() + drag)
+    fastest = max(math.sqrt(highest), RodOperator(model, rods.damping, rods.end_damping).gershgorin() + drag)
     end = loads_end(model)
     times = [end if end < math.inf else 0.0, float((rods.damping * rods.rest_length / rods.stiffness).max())]
     if lowest > 0.0:
@@ -60,9 +60,9 @@ def _of_all_modes(model: Model) -> tuple[float, float]:
 def _of_loaded_mode(model: Model) -> tuple[float, float]:
     """The same of a model that is too large for all its modes: ω² of the one that the loads excite, and a bound."""
     mode = loaded_mode(model)
-    highest = operator_of(
+    highest = RodOperator(
         model, model.rods.stiffness / model.rods.rest_length, model.rods.end_stiffness
-    ).gershgorin()
+    ).gershgorin() + highest_sprung(model)
     return _swinging(model) if mode is None else mode[0] ** 2, highest
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from pinjoint.components.derived import chord_rotation, on_axis, rigid_slopes
 from pinjoint.components.model import Model
+from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.rod import bends
 
 Array = NDArray[np.float64]
@@ -64,8 +65,9 @@ def free_coordinates(model: Model) -> NDArray[np.bool_]:
 def deformations(model: Model) -> tuple[Array, NDArray[np.intp], NDArray[np.intp], Array, Array]:
     """How rods deform by small displacements and rotations from the original geometry: entries, rows and columns.
 
-    Elongations, and in models that bend two combinations of the slopes of each rod, by which K = Σ k d dᵀ and likewise
-    C: K₁₁ (φ_a + K₁₂/K₁₁ φ_b)² + (K₂₂ − K₁₂²/K₁₁) φ_b². Also the stiffness and the damping of every row.
+    Elongations, what springs of supports hold and, in models that bend, two combinations of the slopes of each rod, by
+    which K = Σ k d dᵀ and likewise C: K₁₁ (φ_a + K₁₂/K₁₁ φ_b)² + (K₂₂ − K₁₂²/K₁₁) φ_b². Also the stiffness and the
+    damping of every row.
     """
     rods = model.rods
     ends = rods.between.astype(np.intp)
@@ -91,6 +93,11 @@ def deformations(model: Model) -> tuple[Array, NDArray[np.intp], NDArray[np.intp
             entries.append(np.concatenate([leaning * own.sum(axis=1)[:, None], own], axis=1).ravel())
         stiffness += [start, end - share * mixed]
         damping += [rods.end_damping[:, 0], rods.end_damping[:, 2] - share * rods.end_damping[:, 1]]
+    springs = spring_stiffness(model)[:, :width].ravel()
+    held = np.flatnonzero(springs)
+    rows.append(sum(map(len, stiffness)) + np.arange(len(held)))
+    columns, entries = [*columns, held], [*entries, np.ones(len(held))]
+    stiffness, damping = [*stiffness, springs[held]], [*damping, np.zeros(len(held))]
     found = map(np.concatenate, (entries, rows, columns, stiffness, damping))
     return tuple(found)  # type: ignore[return-value]
 

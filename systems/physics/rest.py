@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends
+from pinjoint.components.particle import is_sprung, spring_stiffness
 from pinjoint.systems.islands import Rows
 from pinjoint.systems.physics.bending import bending_energy, bowing_work, levers
 from pinjoint.systems.physics.kernels import LOST_UNSEEN, REST_RESIDUAL, SMALL_SHARE
@@ -40,38 +40,26 @@ class RestMeasure:
     @classmethod
     @_BEYOND
     def of(cls, model: Model, unbalanced: Array, turning: Array | float = 0.0) -> RestMeasure:
-        """The measure of the state last observed.
+        """The measure of the state last observed; moments count as forces by the shortest rod at their particle.
 
         unbalanced, turning: force and moment on each particle without dampers and drag (kN, kN·m).
         """
         particles, rods = model.particles, model.rods
-        pull, flexibility = np.abs(rods.axial_force), rods.rest_length / rods.stiffness
-        moved = np.abs(particles.displacement).max(axis=1, initial=0.0)
-        measure = cls(
-            residual=(np.abs(unbalanced) * (particles.mobility > 0.0)).max(axis=1, initial=0.0),
-            kinetic=0.5 * particles.mass * (particles.velocity**2).sum(axis=1),
-            load=np.abs(particles.constant_force).max(axis=1, initial=0.0),
-            pull=pull,
-            elastic=500.0 * pull**2 * flexibility,
-            round_off=np.finfo(float).eps * moved[rods.between].max(axis=1, initial=0.0) / flexibility,
-        )
-        return measure._with_turning(model, turning) if bends(model) else measure
-
-    def _with_turning(self, model: Model, turning: Array | float) -> RestMeasure:
-        """The same of a model that bends; moments count as forces by the shortest rod at their particle."""
-        particles, rods = model.particles, model.rods
-        lever, free = levers(model), particles.turning > 0.0
+        flexibility, lever, free = rods.rest_length / rods.stiffness, levers(model), particles.turning > 0.0
+        moved = np.abs(particles.displacement).max(axis=1, initial=0.0)[rods.between].max(axis=1, initial=0.0)
         rolled = np.abs(particles.rotation)[rods.between].max(axis=1, initial=0.0)
         firm = rods.end_stiffness.max(axis=1, initial=0.0) / rods.rest_length
+        pushed = (np.abs(unbalanced) * (particles.mobility > 0.0)).max(axis=1, initial=0.0)
+        loaded = np.abs(particles.constant_force).max(axis=1, initial=0.0)
         bending = np.abs(rods.end_moment).max(axis=1, initial=0.0) / rods.rest_length
-        return RestMeasure(
-            residual=np.maximum(self.residual, np.abs(turning) * free * lever),
-            kinetic=self.kinetic
-            + 0.5 * particles.inertia * np.where(free, particles.angular_velocity, 0.0) ** 2,
-            load=np.maximum(self.load, np.abs(particles.constant_moment) * lever),
-            pull=np.maximum(self.pull, bending),
-            elastic=self.elastic + 1000.0 * bending_energy(model),
-            round_off=self.round_off + np.finfo(float).eps * firm * rolled,
+        spin = np.where(free, particles.angular_velocity, 0.0)
+        return cls(
+            residual=np.maximum(pushed, np.abs(turning) * free * lever),
+            kinetic=0.5 * (particles.mass * (particles.velocity**2).sum(axis=1) + particles.inertia * spin**2),
+            load=np.maximum(loaded, np.abs(particles.constant_moment) * lever),
+            pull=np.maximum(np.abs(rods.axial_force), bending),
+            elastic=500.0 * rods.axial_force**2 * flexibility + 1000.0 * bending_energy(model),
+            round_off=np.finfo(float).eps * (moved / flexibility + firm * rolled),
         )
 
     @_BEYOND
@@ -100,12 +88,14 @@ class RestMeasure:
     def measures(self, model: Model, particles: Mask, rods: Mask) -> Array:
         """The measures of these particles and rods at rest, shape (8,)."""
         work = model.particles.constant_force[particles] * model.particles.displacement[particles]
+        turned = model.particles.constant_moment[particles] * model.particles.rotation[particles]
         measures = np.zeros(len(Measure))
         measures[Measure.ELASTIC] = self.elastic[rods].sum()
-        measures[Measure.POTENTIAL] = 1000.0 * work.sum()
-        if bends(model):
-            turned = model.particles.constant_moment[particles] * model.particles.rotation[particles]
-            measures[Measure.POTENTIAL] += 1000.0 * (turned.sum() + bowing_work(model)[rods].sum())
+        if is_sprung(model):
+            moved = np.column_stack([model.particles.displacement, model.particles.rotation])
+            measures[Measure.ELASTIC] += 500.0 * (spring_stiffness(model) * moved**2)[particles].sum()
+        bowed = turned.sum() + bowing_work(model)[rods].sum()
+        measures[Measure.POTENTIAL] = 1000.0 * work.sum() + 1000.0 * bowed
         measures[Measure.RESIDUAL] = self.residual[particles].max(initial=0.0)
         measures[Measure.LARGEST_FORCE] = max(
             self.load[particles].max(initial=0.0), self.pull[rods].max(initial=0.0)

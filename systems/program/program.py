@@ -221,6 +221,9 @@ class Program:
             "lever": np.column_stack([np.ones((len(lever), 2)), arm * lever]),
             "particles_mobility": np.column_stack([column("particles.mobility"), turning]),
             "particles_masses": np.column_stack([mass, mass, column("particles.inertia") / (arm * arm)]),
+            "particles_support_springs": np.column_stack(
+                [column("particles.support_springs"), column("particles.rotation_spring") / (arm * arm)]
+            ),
             "particles_constant_force": np.column_stack(
                 [column("particles.constant_force"), column("particles.constant_moment") / arm]
             ),

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bears_between, bends, is_warm, turned_between
+from pinjoint.components.particle import is_sprung
+from pinjoint.components.rod import bears_between, bends, is_warm, is_warped, turned_between
 from pinjoint.systems import is_ours
 from pinjoint.systems.base import MOST_PARTS, REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
 from pinjoint.systems.collision.driven.columns import Order, Real, Whole
@@ -109,8 +110,14 @@ entered = kept(no_cfunc_wrapper=True, _nrt={may_allocate})  # nobody calls them 
 '''
 
 
-# Of a whole model.
-_TRAITS = {"warm": is_warm, "bends": bends, "loaded": bears_between, "turned": turned_between}
+_TRAITS = {  # of a whole model
+    "warm": is_warm,
+    "bends": bends,
+    "loaded": bears_between,
+    "turned": turned_between,
+    "warped": is_warped,
+    "sprung": is_sprung,
+}
 
 
 def kind_of(model: Model, integrator: Integrator, systems: Sequence[StepSystem]) -> tuple[str, ...]:
@@ -136,7 +143,8 @@ class Writer:
 
     names: what the source refers to, kernels and enumerations. rates: something depends on velocity. powers: some
     account gains by the step. working: laws of rods whose force is no part of the elastic energy. rows: those of rods that
-    one loop of a step goes over: the first, and that after the last.
+    one loop of a step goes over: the first, and that after the last. zeros: what stands for columns that hold nothing else,
+    which would cost a step of a large frame a twelfth.
     """
 
     rows = ALL
@@ -145,7 +153,9 @@ class Writer:
         self.model = model
         self.form = form
         self.integrator = integrator
-        self.warm, self.bends, self.loaded, self.turned = (has(model) for has in _TRAITS.values())
+        traits = (has(model) for has in _TRAITS.values())
+        self.warm, self.bends, self.loaded, self.turned, warped, self.sprung = traits
+        self.zeros = {} if warped else {"rods_initial_slopes": "(0.0, 0.0)"}
         self.coordinates = 3 if self.bends else 2
         self.collides = any(system.impulsive for system in systems)
         self.shift = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
@@ -186,6 +196,7 @@ class Writer:
         # All arrays that the functions read or write besides the integrator's own.
         self.columns = [*ALWAYS, *(["rods_misfit"] if self.warm else []), *(OF_BENDING if self.bends else ())]
         self.columns += ["rods_span_load"] if self.loaded else []
+        self.columns += ["particles_support_springs"] if self.sprung else []
         self._add_columns([*self.bound, *self.potentials.values()])
         if self.pairs:
             self.columns = list(dict.fromkeys([*self.columns, "particles_position", *ARRAYS]))
@@ -204,7 +215,7 @@ class Writer:
             if b.role is StepRole.LOAD:
                 names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in ("on", "force", "values", "first")))
             else:
-                known = PROVIDED | {*TRIAL, *(TURNING if self.bends else ())}
+                known = PROVIDED | {*TRIAL, *(TURNING if self.bends else ()), *self.zeros}
                 taken = (p for p in b.parameters if p not in known)
                 names.update(dict.fromkeys(b.stored(p) if p in b.arrays else p for p in taken))
             if b.role is StepRole.EVENT:
@@ -224,6 +235,7 @@ class Writer:
             "LOADS": bool(self.of[StepRole.LOAD]),
             "MEETS": self.collides,
             "POWERS": self.powers,
+            "SPRUNG": self.sprung,
             "TURNED": self.turned,
             "WARM": self.warm,
             "mass": "particles_masses[i, d]" if self.bends else "particles_mass[i]",
@@ -243,6 +255,8 @@ class Writer:
         """How a kernel's parameter is written inside the loop over its rows, or over pairs of particles i and j."""
         if parameter in PROVIDED:
             return OF_PAIR.get(parameter, parameter)
+        if parameter in self.zeros:
+            return self.zeros[parameter]
         if parameter in TURNING and self.bends:
             return f"{TURNING[parameter]}[{index}, 2] * per_arm[0]"
         name, single = TRIAL.get(parameter, parameter), False
@@ -396,7 +410,8 @@ class Writer:
 
     def _particle_forces(self, powers: bool = False, span: str = EVERY) -> list[str]:
         """Forces on the particles from outside, and of the laws that resist their motion."""
-        body = self._each_coordinate("force[i, {0}] = particles_constant_force[i, {0}]")
+        held = " - particles_support_springs[i, {0}] * displacement[i, {0}]" * self.sprung
+        body = self._each_coordinate(f"force[i, {{0}}] = particles_constant_force[i, {{0}}]{held}")
         for b in self.of[StepRole.PARTICLE_FORCE]:
             body += [f"fx, fy = {self._apply(b, 'i')}", "force[i, 0] += fx", "force[i, 1] += fy"]
             body += [_particle_power(b)] if powers else []

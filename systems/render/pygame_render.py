@@ -14,6 +14,7 @@ from pinjoint.components.form import Form
 from pinjoint.components.language import language
 from pinjoint.components.model import Model
 from pinjoint.components.toolbar import Toolbar
+from pinjoint.components.units import units_on_screen
 from pinjoint.components.view import View
 from pinjoint.systems.base import Phase, System
 from pinjoint.systems.render.backends.pygame_canvas import Canvas
@@ -75,7 +76,7 @@ def _bar(stages: Sequence[Stage]) -> object:
             and view.steady
             and not (view.covers(view.pixel) or view.help or view.menu)
         ):
-            return language(), view.theme, view.pixel_ratio, view.camera.viewport, shown
+            return language(), units_on_screen(), view.theme, view.pixel_ratio, view.camera.viewport, shown
     return None
 
 
@@ -90,4 +91,4 @@ def _looks(stages: Sequence[Stage]) -> tuple[object, ...]:
         s.looks if isinstance(s, Form) else (s.context, s.revision) if isinstance(s, Model) else s
         for s, _ in stages
     )
-    return language(), tuple(view.looks for _, view in stages), tuple(shown)
+    return language(), units_on_screen(), tuple(view.looks for _, view in stages), tuple(shown)

@@ -188,6 +188,13 @@ def _spiral(size: float, unit: float) -> Parts:
     return [("hollow", circle(size)), *ink]
 
 
+def _spring(size: float, unit: float) -> Parts:
+    """Elastic support in one direction: a spring on hatched ground."""
+    turns = [(3.0 + 2.0 * k, 5.0 * (-1) ** k) for k in range(6)]
+    points = np.array([(0.0, 0.0), (2.0, 0.0), *turns, (14.0, 0.0), (_HEIGHT, 0.0)])
+    return [*(("ink", part * unit) for part in _thick(points)), *_ground(_HEIGHT - 0.5, unit)]
+
+
 SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
     "ring": lambda radius, unit: [("ink", circle(radius)), ("hollow", circle(max(radius - RIM * unit, 0.0)))],
     "disc": lambda radius, unit: [("ink", circle(radius))],
@@ -198,6 +205,7 @@ SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
     "guided": _guided,
     "unturned": _unturned,
     "spiral": _spiral,
+    "spring": _spring,
 }
 
 

@@ -8,6 +8,7 @@ from contextlib import ExitStack, contextmanager
 
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
+from pinjoint.components.particle import is_sprung
 from pinjoint.components.settings import AUTOMATIC
 from pinjoint.systems.base import Integrator, Law, Phase, StepSystem
 from pinjoint.systems.collision.free.discs import Discs
@@ -102,7 +103,8 @@ class Programs:
     @property
     def _is_exact(self) -> bool:
         """True if particles fly exactly."""
-        return self.collides and all(system.leaves_flight_exact(self._model) for system in self.plan)
+        free = self.collides and not is_sprung(self._model)
+        return free and all(system.leaves_flight_exact(self._model) for system in self.plan)
 
     @property
     def _chosen(self) -> Integrator:

@@ -29,7 +29,7 @@ class Time(System):
             return
         document.simulation.act_in(frame.scene)
         document.note_beginning()
-        if document.simulation.halted or not session.has_program(document.simulation):
+        if document.simulation.halted or not session.readiness.lets(document.simulation):
             return
         with document.timeline.recording():
             document.live.frame(frame.elapsed)

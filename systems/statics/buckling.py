@@ -20,6 +20,7 @@ from pinjoint.components.derived import on_axis
 from pinjoint.components.language import plural, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
+from pinjoint.components.particle import supported
 from pinjoint.components.rod import bears_between
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import Matrix
@@ -175,7 +176,8 @@ def _geometric(structure: Structure, axial_force: Array, share: float, rods: Res
         bent = replace(bent, **still | {"along": along})
         bending = replace(bending, end_stiffness=np.zeros_like(bending.end_stiffness))
     rods = replace(rods, axial_force=axial_force, bent=bent)
-    return replace(structure, bending=bending).tangent(rods, np.ones(len(axial_force), dtype=bool))
+    unsupported = replace(structure, bending=bending, springs=np.zeros_like(structure.springs))
+    return unsupported.tangent(rods, np.ones(len(axial_force), dtype=bool))
 
 
 def _resisting(model: Model, structure: Structure, stiffness: Matrix, softening: Matrix) -> Matrix:
@@ -269,6 +271,7 @@ def _factors(structure: Structure, vectors: Array, steady: Matrix, softening: Ma
         if structure.bending is not None:
             slopes = structure.slope_rates(structure.spread(vector), structure.unmoved)
             energy += float((slopes * structure.bending.moments(slopes)).sum())
+        energy += float(vector @ (structure.gather(structure.springs) * vector))
         energy += float(vector @ (steady @ vector))
         found.append(-energy / float(vector @ (softening @ vector)))
     return np.array(found)
@@ -291,7 +294,7 @@ def members(model: Model) -> Rows:
     ends, rigid = rods.between.astype(np.intp), rods.fixity == 1.0
     axis = rods.difference / np.maximum(rods.original_length, 1e-300)[:, None]
     joined = np.bincount(ends.ravel(), minlength=particles.count) == 2
-    free = joined & ~particles.fixed.any(axis=1) & ~particles.fixed_rotation
+    free = joined & ~supported(model).any(axis=1)
     order = np.argsort(ends.ravel(), kind="stable")
     one, other = order[free[ends.ravel()[order]]].reshape(-1, 2).T  # both ends of rods at such joints
     cross = axis[one // 2, 0] * axis[other // 2, 1] - axis[one // 2, 1] * axis[other // 2, 0]

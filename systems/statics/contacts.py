@@ -89,6 +89,7 @@ class Discs:
             structure,
             position=self.start,
             fixed=np.concatenate([structure.fixed, still == 0.0]),
+            springs=np.concatenate([structure.springs, still]),
             unknown=np.concatenate([structure.unknown, still != 0.0]),
             body=np.concatenate([structure.body, structure.body.max() + 1 + np.arange(len(still))]),
             own_weight=np.concatenate([structure.own_weight, still[:, 0]]),

@@ -11,6 +11,7 @@ import numpy as np
 
 from pinjoint.components.language import joined, plural, tr
 from pinjoint.components.model import Model
+from pinjoint.components.particle import supported
 from pinjoint.components.rod import bends, nodes, rigid_joints
 
 
@@ -33,16 +34,14 @@ class Count:
     @classmethod
     def of(cls, model: Model) -> Count:
         """The rods, constraints and nodes of a model, and its hinges if it bends; particles without rods are no nodes."""
-        particles, rods, used = model.particles, model.rods, nodes(model)
-        constraints = int(particles.fixed[used].sum())
+        rods, used, held = model.rods, nodes(model), supported(model)
+        constraints = int(held[used, :2].sum())
         if not bends(model):
             return cls(rods.count, constraints, int(used.sum()))
         rigid = rods.turning_shares > 0.0
         turns = rigid_joints(model)
         hinges = int(np.count_nonzero(~rigid)) - int((used & ~turns).sum())
-        return cls(
-            rods.count, constraints + int(particles.fixed_rotation[turns].sum()), int(used.sum()), hinges
-        )
+        return cls(rods.count, constraints + int(held[turns, 2].sum()), int(used.sum()), hinges)
 
     @property
     def formula(self) -> str:

@@ -20,6 +20,7 @@ from pinjoint.components.derived import with_full_turns
 from pinjoint.components.field import SMALLEST
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
+from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.rod import bends
 from pinjoint.components.table import flags
 from pinjoint.components.theory import EXACT, FIRST_ORDER, THEORIES
@@ -70,7 +71,8 @@ class Response:
     elastic_force: the trial force, before yielding. plastic_strain: after yielding. axis: unit vectors from
     first to second end, (rods, 2). flowing: rods that yield now. slack: one-sided rods without force.
     round_off: what rounding alone makes of elastic_force (kN). elongation: of the axis, which may bow. bent: how
-    members bend; None where none do. share: of the distributed forces that acts.
+    members bend; None where none do. share: of the distributed forces that acts. spring_force: what holds particles against
+    elastic supports, (n, …).
     """
 
     elongation: Array
@@ -85,6 +87,7 @@ class Response:
     round_off: Array
     bent: Bent | None = None
     share: float = 0.0
+    spring_force: Array | float = 0.0
 
     @property
     def soft(self) -> Flags:
@@ -127,6 +130,7 @@ class Structure:
         every body that nothing holds along an axis (its translation is arbitrary). Where members bend,
         (n, 3) with the rotations of particles with rigid rod ends, as `fixed` with their clamps.
     body: number of the connected body of each particle, (n,).
+    springs: stiffness of elastic supports, 0 in fixed directions, (n, 2) or (n, 3).
     sense: 1 for cables (tension only), −1 for contacts (compression only), else 0.
     own_weight: stiffness added to that of its rods in the `weight` of a particle (kN/m), (n,).
     flat: rods whose axis keeps its direction, such as contacts with a straight side.
@@ -145,6 +149,7 @@ class Structure:
     compression_limit: Array
     sense: Array
     fixed: Flags
+    springs: Array
     unknown: Flags
     body: Rows
     own_weight: Array
@@ -162,10 +167,10 @@ class Structure:
         yields = bool(model.settings.plasticity)
         ends = rods.between.astype(np.intp)
         body = np.unique(lowest_joined(particles.count, ends), return_inverse=True)[1]
-        fixed = particles.fixed.copy()
         bending = Bending.of(model, bows=theory == EXACT) if bends(model) else None
-        if bending is not None:
-            fixed = np.column_stack([fixed, particles.fixed_rotation])
+        width = 2 if bending is None else 3
+        fixed = np.column_stack([particles.fixed, particles.fixed_rotation])[:, :width]
+        springs = spring_stiffness(model)[:, :width]
         return cls(
             position=particles.position.copy(),
             ends=ends,
@@ -178,7 +183,8 @@ class Structure:
             compression_limit=rods.compression_limit.copy() if yields else np.full(rods.count, np.inf),
             sense=rods.tension_only.astype(np.float64),
             fixed=fixed,
-            unknown=_held_by_rods(particles.count, ends, bending) & ~fixed & ~_arbitrary(fixed, body),
+            springs=springs,
+            unknown=_held_by_rods(springs, ends, bending) & ~fixed & ~_arbitrary(fixed | (springs > 0.0), body),
             body=body,
             own_weight=np.zeros(particles.count),
             flat=np.zeros(rods.count, dtype=bool),
@@ -188,7 +194,30 @@ class Structure:
 
     def with_translations(self) -> Structure:
         """The same structure with the arbitrary translations of free bodies among the unknowns."""
-        return replace(self, unknown=_held_by_rods(len(self.position), self.ends, self.bending) & ~self.fixed)
+        return replace(self, unknown=_held_by_rods(self.springs, self.ends, self.bending) & ~self.fixed)
+
+    def unsupported(self) -> Structure:
+        """The same structure without supports."""
+        free = replace(self, fixed=np.zeros_like(self.fixed), springs=np.zeros_like(self.springs))
+        return free.with_translations()
+
+    @property
+    def supported(self) -> Flags:
+        """Directions in which supports hold particles, rigidly or elastically."""
+        return self.fixed | (self.springs > 0.0)
+
+    def of_supports(self, field: Array) -> Array:
+        """A field in fixed directions, else 0."""
+        return np.where(self.fixed, field, 0.0)
+
+    def of_unknowns(self, field: Array) -> Array:
+        """A field in the directions of unknowns, else 0."""
+        return self.spread(self.gather(field))
+
+    def reactions(self, response: Response, load: Array) -> Array:
+        """Forces of supports on the particles under a load (n, …)."""
+        found: Array = self.of_supports(self.internal(response) - load) - response.spring_force
+        return found + 0.0
 
     def grown(self, share: float) -> Structure:
         """The same structure with a share of its lack of fit and warmth."""
@@ -335,7 +364,7 @@ class Structure:
         if self.bending is not None:
             of_ends = self.bending.end_stiffness[:, ::2].ravel()
             weight = np.column_stack([weight, np.bincount(self.ends.ravel(), of_ends, len(weight))])
-        return self.gather(weight)
+        return self.gather(weight + self.springs)
 
     def effort(self, vector: Array, response: Response) -> float:
         """The energy (kN·m) beside which that of a motion is round-off: of rods that resist it with all they have.
@@ -352,7 +381,8 @@ class Structure:
             response.length > 0.0, response.length, np.inf
         )
         bent = self.bending.end_stiffness[:, ::2] * (turns + leaning[:, None]) ** 2
-        return float((self.stiffness / self.rest_length) @ along**2 + bent.sum())
+        sprung = (self.springs * field**2).sum()
+        return float((self.stiffness / self.rest_length) @ along**2 + bent.sum() + sprung)
 
     # --- forces --------------------------------------------------------------------------------------
 
@@ -402,7 +432,13 @@ class Structure:
             round_off=self._round_off_of_forces(displacement, plastic_strain, bent),
             bent=bent,
             share=share,
+            spring_force=self.springs * displacement if self.is_sprung else 0.0,
         )
+
+    @cached_property
+    def is_sprung(self) -> bool:
+        """True if some support is elastic."""
+        return bool(self.springs.any())
 
     def chords(self, displacement: Array) -> Array:
         """How far the chords of rods have turned: atan2(D × Δ, D · (D + Δ)), and full turns if they bend; (rods,)."""
@@ -455,8 +491,8 @@ class Structure:
         """Forces (n, 2), or (n, 3), that hold the particles against the rods and what acts between their ends."""
         pull = response.axial_force[:, None] * response.axis
         if response.bent is None:
-            return self.scatter(pull)
-        return self._sheared(response, pull, response.bent.moment, response.bent.shear)
+            return self.scatter(pull) + response.spring_force
+        return self._sheared(response, pull, response.bent.moment, response.bent.shear) + response.spring_force
 
     def resistance(self, field: Array) -> Array:
         """Forces that hold the particles at small displacements from the original positions, by first-order theory."""
@@ -464,8 +500,9 @@ class Structure:
         stretched = (self.relative(field) * response.axis).sum(axis=1)
         pull = (self.stiffness / self.rest_length * stretched)[:, None] * response.axis
         if self.bending is None:
-            return self.scatter(pull)
-        return self.held(self.bending.moments(self.slope_rates(field, response)), pull)
+            return self.scatter(pull) + self.springs * field
+        slopes = self.slope_rates(field, response)
+        return self.held(self.bending.moments(slopes), pull) + self.springs * field
 
     def held(self, moment: Array, pull: Array | float = 0.0) -> Array:
         """The same against rods with moments on their ends (rods, 2), and axial forces as vectors (rods, 2)."""
@@ -554,17 +591,32 @@ class Structure:
                 response.bent, along, response.axial_force, a, response.length, geometric
             ).reshape(-1, 2, 3, 2, 3)
             parts[:, :, :2, :, :2] += bars
-        return self.assembly.matrix(parts.ravel())
+        matrix = self.assembly.matrix(parts.ravel())
+        if not self.is_sprung:
+            return matrix
+        springs = self.gather(self.springs)
+        if isinstance(matrix, np.ndarray):
+            return matrix + np.diag(springs)
+        from scipy.sparse import csc_matrix, diags
+
+        return csc_matrix(matrix + diags(springs))
 
     @property
     def deformations(self) -> int:
-        """Rows of the compatibility matrix: one for each rod, and each of its rigid ends."""
-        return len(self.ends) + (0 if self.bending is None else int(self.bending.rigid.sum()))
+        """Rows of the compatibility matrix: one for each rod, each of its rigid ends, and each spring of supports."""
+        rigid = 0 if self.bending is None else int(self.bending.rigid.sum())
+        return len(self.ends) + rigid + int(self.sprung.sum())
+
+    @property
+    def sprung(self) -> Flags:
+        """Which unknowns springs hold, (N,)."""
+        return self.gather(self.springs) > 0.0
 
     def compatibility(self, response: Response) -> csc_matrix:
-        """Deformations of rods from the unknowns; its transpose is the equilibrium matrix.
+        """Deformations of rods and springs from the unknowns; its transpose is the equilibrium matrix.
 
-        Elongations (rods, N); where members bend, those of the axes and below them the slopes of all rigid ends.
+        Elongations (rods, N); where members bend, those of the axes and below them the slopes of all rigid ends; last what
+        springs hold.
         """
         by_ends, ends = self._elongations(response), self.ends
         if self.bending is not None:
@@ -572,15 +624,20 @@ class Structure:
             by_slopes = self._slopes_by_ends(response)
             by_ends = np.concatenate([by_ends, by_slopes[rigid]])
             ends = np.concatenate([ends, np.repeat(self.ends, rigid.sum(axis=1), axis=0)])
-        return spread_by_ends(by_ends, ends, len(self.position))[:, self.index].tocsc()
+        found = spread_by_ends(by_ends, ends, len(self.position))[:, self.index]
+        if self.is_sprung:
+            from scipy.sparse import identity, vstack
+
+            found = vstack([found, identity(self.size, format="csr")[self.sprung]])
+        return found.tocsc()
 
     @cached_property
     def reaches(self) -> Array:
         """What deformations are multiplied by, so that they are lengths: 1, slopes by the rest length."""
-        ones = np.ones(len(self.ends))
-        if self.bending is None:
-            return ones
-        return np.concatenate([ones, np.repeat(self.rest_length, self.bending.rigid.sum(axis=1))])
+        reaches = [np.ones(len(self.ends)), self.measure[self.sprung]]
+        if self.bending is not None:
+            reaches.insert(1, np.repeat(self.rest_length, self.bending.rigid.sum(axis=1)))
+        return np.concatenate(reaches)
 
     @property
     def scaled_compatibility(self) -> Array:
@@ -617,10 +674,10 @@ class Structure:
         return by_ends
 
 
-def _held_by_rods(particles: int, ends: Rows, bending: Bending | None) -> Flags:
-    """Both directions of particles with rods, (n, 2); where members bend, and rotations of those with rigid ends."""
-    held = np.zeros((particles, 2 if bending is None else 3), dtype=bool)
-    held[ends, :2] = True
+def _held_by_rods(springs: Array, ends: Rows, bending: Bending | None) -> Flags:
+    """Both directions of particles with rods or springs, (n, 2); where members bend, and rotations at rigid ends, (n, 3)."""
+    held = np.zeros(springs.shape, dtype=bool)
+    held[ends, :2] = held[(springs[:, :2] > 0.0).any(axis=1), :2] = True
     if bending is not None:
         held[ends[bending.rigid], 2] = True
     return held

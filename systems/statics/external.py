@@ -61,7 +61,8 @@ class External:
             scaled = np.column_stack([scaled, np.where(turns, moment, 0.0)])
             steady = np.column_stack([steady, np.zeros(particles.count)])
         if theory == FIRST_ORDER:
-            scaled[~nodes(model)] = steady[~nodes(model)] = 0.0
+            alone = ~nodes(model) & ~particles.support_springs.any(axis=1)
+            scaled[alone] = steady[alone] = 0.0
         return cls(scaled, steady, tuple(notes))
 
     def at(self, factor: float) -> Array:
@@ -112,7 +113,7 @@ def loose_bodies(structure: Structure, load: Array) -> list[LooseBody]:
     members = np.bincount(structure.body, minlength=count)
     found = []
     for axis in range(2):
-        held = np.bincount(structure.body, structure.fixed[:, axis], count) > 0
+        held = np.bincount(structure.body, structure.supported[:, axis], count) > 0
         net = np.bincount(structure.body, load[:, axis], count)
         gross = np.bincount(structure.body, np.abs(load[:, axis]), count)
         pulled = np.abs(net) > NO_NET_FORCE * gross

@@ -10,10 +10,10 @@ By how much the releases open is found by virtual work:
 
     1 · δ = Σ n N L/EA + Σ ∫ m M dx/EI + Σ n ΔL + Σ ∫ m κ dx − Σ r c
 
-(springs at the ends of rods add Σ m M/k to ∫ m M dx/EI), where
 n, m and the reactions r are those of a unit force; N, M those of the load; ΔL and κ elongations and curvatures without
-force, by warmth and lack of fit; c displacements of supports. Exact: N is constant along a rod or, with what acts along it,
-counts by its mean; m is linear, and so is M but for what acts between the ends.
+force, by warmth and lack of fit; c displacements of supports, −R/k of elastic ones. Springs at the ends of rods add m M/k to
+∫ m M dx/EI. Exact: N is constant along a rod or, with what acts along it, counts by its mean; m is linear, and so is M but
+for what acts between the ends.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from pinjoint.components.derived import on_axis
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.particle import spring_stiffness, supported
 from pinjoint.components.spans import Kinks
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import Array, Rows, Structure, largest, normalised
@@ -123,19 +124,23 @@ def _product(form: Array, unit: Array) -> Array:
 
 @dataclass(frozen=True)
 class Work:
-    """The terms of virtual work. settled: rows and axes of moved supports (k, 2); of_supports: −r c (m, k)."""
+    """The terms of virtual work. supports: those of supports that have moved or are elastic, by their reactions: −r c of the
+    load, r r'/k of units. settled: their rows and axes (k, 2). moved: c (k,), −R₀/k of springs.
+    """
 
     axial: Terms
     bending: Terms
+    supports: Terms
     settled: Rows
-    of_supports: Array
+    moved: Array
 
     @property
     def gap(self) -> Array:
         """δ₀ (m,), 0 where its terms cancel but for rounding."""
-        parts = [part for terms in (self.axial, self.bending) for part in (terms.of_load, terms.of_free)]
-        total: Array = np.sum([part.sum(axis=1) for part in (*parts, self.of_supports)], axis=0)
-        size = np.sum([np.abs(part).sum(axis=1) for part in (*parts, self.of_supports)], axis=0)
+        every = self.axial, self.bending, self.supports
+        parts = [part for terms in every for part in (terms.of_load, terms.of_free)]
+        total: Array = np.sum([part.sum(axis=1) for part in parts], axis=0)
+        size = np.sum([np.abs(part).sum(axis=1) for part in parts], axis=0)
         return np.where(np.abs(total) > _ROUNDING * size, total, 0.0)
 
 
@@ -178,8 +183,8 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
 
     Bar: Δ is the change of distance between its ends (apart +), the unit pair pulls them together, X > 0 is tension. The
     gap is that in the bar, which is cut: its own elongation, by which it closes, less Δ. Support: Δ and X along +x or +y or
-    counter-clockwise, X acts on the structure. End of a rod: X is the bending moment, Δ = δ the angle by which the pair of
-    unit moments turns joint and rod against each other.
+    counter-clockwise, X acts on the structure; a spring there is cut, and the gap is that in it. End of a rod: X is the
+    bending moment, Δ = δ the angle by which the pair of unit moments turns joint and rod against each other.
     """
     problem = incomputable(model)
     if problem:
@@ -193,14 +198,19 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     except NoEquilibrium as reason:
         raise ForceMethodError(str(reason)) from None
     work = _work(model, unknowns, base, units)
-    own, free, stretched, prescribed = np.zeros((4, len(unknowns)))  # of bars: L₀/EA, ΔL, and Δ; of supports: c
+    # Of bars: L₀/EA, ΔL, and Δ; of springs −1/k and Δ; of rigid supports c.
+    own, free, stretched, prescribed = np.zeros((4, len(unknowns)))
     for index, unknown in enumerate(unknowns):
         if unknown.of_bar:
             own[index], free[index] = work.axial.softness[unknown.place], _free(model)[unknown.place]
             stretched[index] = own[index] * real.axial_force[unknown.place] + free[index]
+        elif spring := unknown.spring(model):
+            own[index] = -1.0 / spring
+            stretched[index] = own[index] * real.reaction[unknown.place]
         elif unknown.of_support:
             prescribed[index] = _places(model)[unknown.place]
-    gap, flexibility = work.gap, work.axial.flexibility + work.bending.flexibility
+    gap = work.gap
+    flexibility = work.axial.flexibility + work.bending.flexibility + work.supports.flexibility
     force: Array = np.linalg.solve(flexibility, prescribed - gap).astype(np.float64)
     size = np.sqrt(np.abs(np.diag(flexibility)))
     flexibility = np.where(np.abs(flexibility) > _ROUNDING * np.outer(size, size), flexibility, 0.0)
@@ -235,7 +245,12 @@ class _Released:
             (bars if unknown.of_bar else self._hinges if unknown.of_end else supports)[unknown.place] = True
         with_all = replace(whole, fixed=whole.fixed & ~supports, unknown=whole.unknown | supports)
         bending = None if whole.bending is None else whole.bending.hinged(self._hinges)
-        released = replace(with_all, stiffness=np.where(bars, 0.0, whole.stiffness), bending=bending)
+        released = replace(
+            with_all,
+            stiffness=np.where(bars, 0.0, whole.stiffness),
+            springs=np.where(supports, 0.0, whole.springs),
+            bending=bending,
+        )
         self._theory = FirstOrder(model, released, with_all)
         motions = released.fields(self._theory.mechanisms)
         if not len(motions):
@@ -275,10 +290,10 @@ class _Released:
         if moment.any():
             load = load - structure.held(moment)
         place = structure.field(model.particles.displacement, model.particles.rotation)
-        supports, strain = share * np.where(structure.fixed, place, 0.0), share * model.rods.plastic_strain
+        supports, strain = share * structure.of_supports(place), share * model.rods.plastic_strain
         moved, response = self._theory.equilibrium(load, supports, strain, share, rods)
         reaction = np.zeros((len(moved), 3))
-        reaction[:, : structure.width] = np.where(structure.fixed, rods.internal(response) - load, 0.0)
+        reaction[:, : structure.width] = rods.reactions(response, load)
         end_moment = structure.end_moments(response) + moment
         state = SetState(moved[:, :2], structure.rotation(moved), response.axial_force, end_moment, reaction)
         return state.without_rounding(model.rods.rest_length)
@@ -305,14 +320,15 @@ def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequ
     sprung = np.where(rods.fixity > 0.0, rods.fixity, 1.0)
     linear = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0 + (1.0 / sprung - 1.0)[:, None] / 3.0 * np.eye(2)
     straight = (m * _product(linear, base.bending_moment)).sum(axis=2)
-    moved = np.where(
-        np.column_stack([model.particles.fixed, model.particles.fixed_rotation]), _places(model), 0.0
-    )
+    springs = spring_stiffness(model)
+    soft = np.divide(1.0, springs, out=np.zeros_like(springs), where=springs > 0.0)
+    moved = np.where(supported(model) & (springs == 0.0), _places(model), -soft * base.reaction)
     for unknown in unknowns:
         if unknown.of_support:
             moved[unknown.place] = 0.0
-    settled = np.argwhere(moved != 0.0)
+    settled = np.argwhere((moved != 0.0) | (springs > 0.0))
     reactions = np.array([unit.reaction for unit in units]).reshape(count, len(moved), 3)[:, *settled.T]
+    at = tuple(settled.T)
     return Work(
         Terms(
             n,
@@ -328,8 +344,15 @@ def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequ
             turning * (straight + (bulge(model) * m).sum(axis=2)),
             length * curvature * m.mean(axis=2),
         ),
+        Terms(
+            reactions[..., None],
+            soft[at],
+            np.ones((len(settled), 1, 1)),
+            -reactions * moved[at],
+            0.0 * reactions,
+        ),
         settled,
-        -reactions * moved[tuple(settled.T)],
+        moved[at],
     )
 
 

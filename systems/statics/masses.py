@@ -81,6 +81,7 @@ class Divided:
             rest_length=length,
             misfit=whole.misfit[row] / parts[row],
             fixed=np.pad(whole.fixed, ((0, len(between)), (0, 0))),
+            springs=np.pad(whole.springs, ((0, len(between)), (0, 0))),
             body=np.concatenate([whole.body, whole.body[whole.ends[inner[0], 0]]]),
             own_weight=np.pad(whole.own_weight, (0, len(between))),
             bending=bending,
@@ -153,7 +154,8 @@ def _bending(model: Model) -> Structure:
     found = Structure.of(model)
     if found.bending is None:
         fixed = np.column_stack([found.fixed, model.particles.fixed_rotation])
-        found = replace(found, bending=Bending.of(model, bows=True), fixed=fixed)
+        springs = np.pad(found.springs, ((0, 0), (0, 1)))
+        found = replace(found, bending=Bending.of(model, bows=True), fixed=fixed, springs=springs)
     return found.with_translations()
 
 

@@ -176,7 +176,7 @@ class _Settling:
         at_rest = Path(self.structure, self._nothing, self._nothing)
         place = self.structure.field(start.displacement, start.rotation)
         if self.structure.first_order:
-            place = np.where(self.structure.fixed, place, 0.0)
+            place = self.structure.of_supports(place)
         self.supports = place
         self.point = at_rest.start(place, start.plastic_strain)
         self.largest = self.structure.largest_force(self.point.response)
@@ -242,20 +242,20 @@ class _Settling:
 
     def _holding(self) -> Array:
         """The forces in free directions that hold the present state."""
-        held = np.where(self.structure.unknown, self.structure.internal(self.point.response), 0.0)
+        held = self.structure.of_unknowns(self.structure.internal(self.point.response))
         of = self.structure.largest
         greatest = max(of(self.external.at(1.0)), self.largest)
         return held if of(held) > BALANCED * greatest else self._nothing
 
     def _carried(self) -> Array:
         """What whole distributed forces would add, in free directions, to the particles' forces in the present state."""
-        return np.where(self.structure.unknown, self.structure.carried(self.point.response), 0.0)
+        return self.structure.of_unknowns(self.structure.carried(self.point.response))
 
     def _held_factor(self) -> float:
         """The load factor of the forces that hold the present state; 0 if they are no scaled load."""
         if not self.load.any():
             return 0.0
-        scaled = np.where(self.structure.unknown, self.external.scaled, 0.0) + self._carried()
+        scaled = self.structure.of_unknowns(self.external.scaled) + self._carried()
         size = float((scaled * scaled).sum())
         factor = float((self.load * scaled).sum()) / size if size > 0.0 else 0.0
         return factor if largest(self.load - factor * scaled) <= HELD * largest(self.load) else 0.0
@@ -384,7 +384,8 @@ class _Settling:
         response = self.point.response
         structure = self.structure
         self.largest = max(self.largest, structure.largest(self.load), structure.largest_force(response))
-        unbalanced = np.where(structure.fixed, 0.0, structure.internal(response) - self.load)
+        unbalanced = structure.internal(response) - self.load
+        unbalanced = unbalanced - structure.of_supports(unbalanced)
         return structure.largest(unbalanced) / self.largest if self.largest > 0.0 else 0.0
 
     def _note_slender(self, factor: float) -> None:

@@ -27,13 +27,12 @@ STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = (
 class StaticState:
     """The state at one load factor, in m, kN and J: the particles' fields are (n, 2) or (n,), the rods' (rods,).
 
-    reaction: the supports' force in constrained directions, 0 elsewhere; reaction_moment: likewise of clamps. diagrams: by
-    the names of columns, (rods, 2). residual: the largest unbalanced
-    force over the largest force so far. dissipated_plastic: since settling began. status: "equilibrium";
-    "neutral equilibrium" where nothing resists some motion, so that the place is one of many; "unstable equilibrium";
-    "mechanism", "collapse" or "limit reached", with which all values are those of the last equilibrium on the way.
-    events: those on the way from the state before. contacts: rows of the discs that press each other, (k, 2), with
-    contact_force (k,).
+    reaction: the supports' force, 0 where there is none; reaction_moment: likewise of clamps and rotation springs.
+    diagrams: by the names of columns, (rods, 2). residual: the largest unbalanced force over the largest so far.
+    dissipated_plastic: since settling began. status: "equilibrium"; "neutral equilibrium" where nothing resists some
+    motion, so that the place is one of many; "unstable equilibrium"; "mechanism", "collapse" or "limit reached", with
+    which all values are those of the last equilibrium on the way. events: those on the way from the state before.
+    contacts: rows of the discs that press each other, (k, 2), with contact_force (k,).
     """
 
     load_factor: float
@@ -69,12 +68,13 @@ class StaticState:
         """The state at these displacements (n, …) under a load; facts: the other fields of the state."""
         rods, count = slice(model.rods.count), model.particles.count  # what follows: contacts, obstacles
         pressing = rods.stop + np.flatnonzero(response.axial_force[rods.stop :] < 0.0)
-        reaction = np.where(structure.fixed, structure.internal(response) - load, 0.0)[:count]
+        reaction = structure.reactions(response, load)[:count]
         elastic = 500.0 * float(
             (response.axial_force**2 * structure.rest_length / structure.stiffness)[rods].sum()
         )
         if structure.bending is not None and response.bent is not None:
             elastic += 1000.0 * float(structure.bending.energy(response.bent.slopes).sum())
+        elastic += 500.0 * float((response.spring_force * displacement).sum())
         length = response.length
         if structure.first_order:  # response.length is that about which rods turn
             length = structure.original_length + response.elongation - structure.misfit

@@ -129,10 +129,11 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
     for body in loose_bodies(structure, load):
         if body.pull:
             raise NoEquilibrium("mechanism", body.event(model, factor).message)
-    supports = np.where(structure.fixed, structure.field(start.displacement, start.rotation), 0.0)
+    supports = structure.of_supports(structure.field(start.displacement, start.rotation))
     theory = FirstOrder(model, structure)
     moved, elastic = theory.equilibrium(load, supports, start.plastic_strain, factor, structure)
-    unbalanced = np.where(structure.fixed, 0.0, structure.internal(elastic) - load)
+    unbalanced = structure.internal(elastic) - load
+    unbalanced = unbalanced - structure.of_supports(unbalanced)
     forces = max(structure.largest(load), structure.largest_force(elastic))
     return StaticState.of(
         model,
@@ -171,12 +172,11 @@ class Indeterminacy:
         """Degrees by the rank r of the compatibility matrix, with supports and without; cables count as taut.
 
         m rods between particles with f free directions have m − r states of self-stress and f − r mechanisms. A rigid end of
-        a rod that bends counts as one more of the m, a rotation as a direction.
+        a rod that bends counts as one more of the m, and so does a spring of a support; a rotation as a direction.
         """
         structure = Structure.of(model, FIRST_ORDER).with_translations()
-        unsupported = replace(structure, fixed=np.zeros_like(structure.fixed)).with_translations()
-        deformations, rank = structure.deformations, _rank(structure)
-        static, internal = deformations - rank, deformations - _rank(unsupported)
+        unsupported, rank = structure.unsupported(), _rank(structure)
+        static, internal = structure.deformations - rank, unsupported.deformations - _rank(unsupported)
         return cls(static, internal, static - internal, structure.size - rank, rank)
 
 
@@ -209,7 +209,7 @@ def self_stress(model: Model) -> Array:
         factor = regular((compatibility.T @ compatibility).tocsc(), np.ones(structure.size))
         for _ in range(_REFINEMENTS):
             states = states - compatibility @ factor.solve(compatibility.T @ states)
-    states = _localised(states)
+    states = _localised(states)[: structure.deformations - int(structure.sprung.sum())]
     scaled: Array = (states / np.abs(states).max(axis=0, initial=0.0)).T
     return scaled
 
@@ -288,4 +288,6 @@ def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Arra
     unit[row, axis] = 1.0
     if quantity in ("displacement", "rotation"):
         return theory.deflection(unit)
+    if spring := float(structure.springs[row, axis]):
+        return -spring * theory.deflection(unit)
     return theory.deflection(structure.resistance(unit)) - unit

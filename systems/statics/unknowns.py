@@ -12,7 +12,7 @@ from pinjoint.components.field import ENDS
 from pinjoint.components.language import marked
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle
+from pinjoint.components.particle import Particle, spring_stiffness, supported
 from pinjoint.components.rod import Rod, bends, rigid_joints
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.wording import missing
@@ -70,6 +70,10 @@ class Unknown:
         """True of a reaction."""
         return isinstance(self.element, Particle)
 
+    def spring(self, model: Model) -> float:
+        """The stiffness of an elastic support whose reaction it is; else 0."""
+        return float(spring_stiffness(model)[self.place]) if self.of_support else 0.0
+
     @property
     def is_moment(self) -> bool:
         """True of a bending moment and of the moment of a clamp."""
@@ -97,9 +101,8 @@ class Unknown:
             raise ForceMethodError(
                 "'{name}' is a particle; say which of its supports, such as {name}.x or {name}.y.", name=name
             )
-        particles = model.particles
-        fixed = np.column_stack([particles.fixed, particles.fixed_rotation & bends(model)])
-        supports = [cls(particles[row], axis) for row, axis in np.argwhere(fixed).tolist()]
+        held = np.argwhere(supported(model) & [True, True, bends(model)]).tolist()
+        supports = [cls(model.particles[row], axis) for row, axis in held]
         choices = [*model.rods.names, *(unknown.name for unknown in (*supports, *_of_ends(model)))]
         raise ForceMethodError(missing(marked("rods and supports"), name, choices))
 
@@ -112,11 +115,11 @@ class Unknown:
                 name=self.name,
                 rod=place,
             )
-        if axis == 2 and not model.particles.fixed_rotation[row]:
+        if axis == 2 and not supported(model)[row, axis]:
             raise ForceMethodError(
                 "{particle} is not clamped, so there is no moment to release there.", particle=place
             )
-        if self.of_support and axis in (0, 1) and not model.particles.fixed[row, axis]:
+        if self.of_support and axis in (0, 1) and not supported(model)[row, axis]:
             raise ForceMethodError(
                 "{particle} is free along {axis}, so there is no reaction to release there.",
                 particle=place,
@@ -184,12 +187,12 @@ def redundants(model: Model) -> list[Unknown]:
 def _equilibrium(model: Model) -> tuple[Array, list[Unknown]]:
     """Columns of the equilibrium matrix and their unknowns: rods, moments at rigid ends (by a mean length), supports."""
     held = Structure.of(model, FIRST_ORDER)
-    free = replace(held, fixed=np.zeros_like(held.fixed), sparse=False).with_translations()
+    free = replace(held, sparse=False).unsupported()
     rigid = np.zeros(free.ends.shape, dtype=bool) if free.bending is None else free.bending.rigid
     weights = np.concatenate([np.where(rigid.any(axis=1), _NEVER, 1.0), np.full(int(rigid.sum()), _FIRST)])
     of_rods = free.scaled_compatibility * weights[:, None]
     place = {int(coordinate): at for at, coordinate in enumerate(free.index.tolist())}
-    supports = [at for at in np.argwhere(held.fixed).tolist() if at[0] * held.width + at[1] in place]
+    supports = [at for at in np.argwhere(held.supported).tolist() if at[0] * held.width + at[1] in place]
     of_supports = np.zeros((len(supports), free.size))
     for number, (row, axis) in enumerate(supports):
         of_supports[number, place[row * held.width + axis]] = _KEPT

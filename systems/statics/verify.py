@@ -12,6 +12,7 @@ from pinjoint.components import written
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import begun, joined, marked, tr
 from pinjoint.components.model import Model
+from pinjoint.components.particle import supported
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.wording import missing
 from pinjoint.components.world import called
@@ -238,11 +239,12 @@ class Comparison:
             return np.ones(rods.count, dtype=bool)
         if quantity in ("shear", "bending_moment"):
             return np.repeat(rigid.any(axis=1, keepdims=True), 2, axis=1)
+        held = supported(self.model)
         if quantity in ("rotation", "reaction_moment"):
-            clamped = particles.fixed_rotation if quantity == "reaction_moment" else ~particles.fixed_rotation
+            clamped = held[:, 2] if quantity == "reaction_moment" else ~particles.fixed_rotation
             return np.asarray(rigid_joints(self.model) & clamped)
-        fixed: Flags = particles.fixed
-        return fixed if quantity == "reaction" else ~fixed
+        concerned: Flags = held[:, :2] if quantity == "reaction" else ~particles.fixed
+        return concerned
 
     def scale(self, quantity: str) -> float:
         """The largest exact value of the quantity; where it is rounding, of its unit; 0 where that is rounding."""

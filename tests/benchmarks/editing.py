@@ -53,7 +53,7 @@ class Hand:
 
     def wait(self) -> None:
         """Until what a run needs after the last edit is compiled, which is measured elsewhere."""
-        while self.session.waits_for(self.session.simulation) is not None:
+        while self.session.readiness.waits_for(self.session.simulation) is not None:
             self.pause()
 
     def frame(self) -> None:

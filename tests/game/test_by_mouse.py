@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 
 from pinjoint import Session
+from pinjoint.components.model import Model
 from pinjoint.components.tags import DiagramShown
-from pinjoint.components.toolbar import Menu
+from pinjoint.components.toolbar import Menu, Tool
 from pinjoint.components.view import Hit
 from pinjoint.documents import models
 from pinjoint.editor.scenes.form import FormScene
@@ -456,3 +457,18 @@ def test_properties_stand_where_they_cover_nothing(session: Session) -> None:
     session.act("fit")
     session.press("return")
     assert session.scenes.active.viewport(session).left < 100.0
+
+
+@pytest.mark.parametrize("source", ["isostatic", None])
+@pytest.mark.parametrize("scene", ["pause", "statics", "simulation"])
+def test_a_button_that_does_nothing_now_says_why(source: str | None, scene: str) -> None:
+    session = Session(Model()) if source is None else Session.open(source)
+    session.press({"pause": "escape", "statics": "q", "simulation": "space"}[scene])
+    session.update_view()
+    tools = [hit for hit in hits_in(session) if isinstance(hit.item, Tool) and not hit.enabled]
+    assert len(tools) > 5
+    for hit in tools:
+        session.notice = ""
+        session.press("click", hit.middle)
+        assert session.notice, hit.item.action
+        assert session.scene == scene

@@ -112,8 +112,8 @@ def test_where_there_is_no_room_for_three_the_newest_set_is_shown_or_the_one_to_
     session.press("k")
     seen = []
     for part in range(1, 8):
-        (_, first) = session.stages[1]
-        captions = [view.caption[0] for _, view in session.stages[1:-2] if view.caption]
+        (_, first) = session.stages[0]
+        captions = [view.caption[0] for _, view in session.stages[:-3] if view.caption]
         seen.append([caption[:5] for caption in captions])
         if part == 2:
             session.click(0.5, 0.5)
@@ -124,7 +124,7 @@ def test_where_there_is_no_room_for_three_the_newest_set_is_shown_or_the_one_to_
     assert seen == [["Set 1"], ["Set 1"], ["Set 2"], ["Set 2"], ["Set 3"], ["Set 3"], ["Set 3"]]
     session.resize(640, 480)
     session.press("k")
-    assert len({view.camera.viewport for _, view in session.stages[1:4]}) == 3
+    assert len({view.camera.viewport for _, view in session.stages[:3]}) == 3
 
 
 def test_a_support_without_rods_is_refused() -> None:
@@ -284,7 +284,7 @@ def test_the_degree_says_how_often() -> None:
     assert not guide.can_release_another
     session.press("n")
     assert "Every unknown is released" in session.notice
-    assert session.scenes.active.stages(session)[0][1].heading == session.notice  # type: ignore[union-attr]
+    assert session.scenes.active.stages(session)[-2][1].heading == session.notice  # type: ignore[union-attr]
     assert "1 unknown to release" in words.degree_of(1)
 
 
@@ -297,8 +297,8 @@ def test_an_unknown_is_not_released_twice() -> None:
 
 
 def cameras_of_sets(session: Session) -> list[Camera]:
-    """The cameras of the three sets, between the message and the working."""
-    return [view.camera for _, view in session.scenes.active.stages(session)[1:-1]]
+    """The cameras of the three sets, before the message and the working."""
+    return [view.camera for _, view in session.scenes.active.stages(session)[:-2]]
 
 
 def test_all_sets_are_looked_at_alike() -> None:
@@ -382,7 +382,7 @@ def test_the_slider_of_the_displacements_scales_all_sets_and_those_to_come() -> 
     guide = asked(session)
     guide.pick(guide.sets[0].model.rods["BD"])
     scales = {one.model.settings.displacement_scale for one in guide.sets}
-    [place] = session.focus[1].slider_places
+    [place] = session.stages[0][1].slider_places
     left, right, y = place.track
     session.press("drag", ((left + right) / 2, y))
     session.press("drag to", (right, y))
@@ -493,7 +493,7 @@ def test_a_single_support_that_was_moved_is_drawn_to_scale() -> None:
     model.create(Particle, 1, position=[(0.0, 0.0)], displacement=[(0.016, 0.0)], fixed=[(True, True)])
     session = Session(model)
     session.press("k")
-    assert session.focus[0].settings.displacement_scale == 1.0
+    assert session.stages[0][0].settings.displacement_scale == 1.0
 
 
 def test_it_is_said_while_forces_and_displacements_are_not_final() -> None:
@@ -642,7 +642,7 @@ def test_sets_stand_still_and_tell_both_parts_of_a_load(size: tuple[int, int]) -
     places = set()
     for _ in range(5):
         session.frame(1 / 60)
-        model, view = session.stages[1]
+        model, view = session.stages[0]
         assert isinstance(model, Model)
         places.add(tuple(view.camera.to_pixels([[0.0, 0.0]])[0].tolist()))
         load = load_theme("light").load

@@ -214,9 +214,57 @@ def test_a_wrong_number_is_explained_and_typed_anew(session: Session) -> None:
         session.press("return")
         assert not course.accepted
         assert said in course.said
-    session.type("3e0")
+    session.type("3e1")
     session.press("return")
     assert course.accepted
+
+
+def keyed(session: Session, text: str) -> None:
+    """Type a text as a keyboard does: each key, and what it types."""
+    for character in text:
+        session.press("space" if character == " " else character)
+        session.type(character)
+
+
+@pytest.mark.parametrize(
+    ("name", "task", "typed"),
+    [
+        ("11_collisions", 1, "3 m/s"),
+        ("11_collisions", 1, "10,8 km/h"),
+        ("04_supports_and_reactions", 1, "30 kN"),
+        ("04_supports_and_reactions", 1, "30000N"),
+        ("05_stiffness", 1, "−29.3 mm"),
+        ("05_stiffness", 1, "-.0293 m"),
+        ("13_vibration", 1, "1.229 Hz"),
+        ("12_frames", 1, "3"),
+    ],
+)
+def test_an_answer_takes_all_keys_and_units(session: Session, name: str, task: int, typed: str) -> None:
+    course = begun(session, name, task)
+    before = session.scene
+    keyed(session, typed)
+    assert (session.scene, course.typed) == (before, typed)
+    assert not session.view.wanted
+    session.press("return")
+    assert course.accepted, course.said
+
+
+def test_an_answer_is_a_text_box_while_it_is_written(session: Session) -> None:
+    course = begun(session, "11_collisions", 1)
+    keyed(session, "4 kg")
+    for key in ("ctrl+a", "delete"):
+        session.press(key)
+    assert (session.particles.count, course.typed) == (2, "")
+    keyed(session, "3 m")
+    session.press("return")
+    assert (course.accepted, course.said) == (False, "The answer must be in m/s, km/h, not in m.")
+    keyed(session, "2 m/s")
+    session.press("escape")
+    assert course.typed == ""
+    keyed(session, "2")
+    session.click(0.0, 0.5)
+    keyed(session, "b")
+    assert (course.typed, session.view.shape is not None or bool(session.notice)) == ("2", True)
 
 
 def test_neither_check_nor_return_skips_an_explanation(session: Session) -> None:

@@ -3,12 +3,13 @@
 import json
 from pathlib import Path
 
+import pygame
 import pytest
 
 from pinjoint import Session
-from pinjoint.app import FRAME, place_on
+from pinjoint.app import FRAME, App, place_on
 from pinjoint.components.view import magnified
-from pinjoint.documents import preferences
+from pinjoint.documents import models, preferences
 from pinjoint.editor.actions.view import THEMES
 from pinjoint.systems.render.theme import theme_names
 
@@ -139,3 +140,15 @@ def test_a_place_is_remembered_as_it_was_and_nonsense_is_not() -> None:
     for wrong in ("x", [1, 2], [1, 2, 3, None], [1.5, 2, 3, 4], [10**9, 2, 3, 4]):
         preferences.remember("window", wrong)  # type: ignore[arg-type]
         assert preferences.preferred_place() is None
+
+
+def test_a_window_remembers_that_it_was_maximised(config: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pinjoint.app.UNSEEN", ())
+    preferences.remember("window", [30, 40, 800, 600])
+    for event, maximised in ((pygame.WINDOWMAXIMIZED, True), (pygame.WINDOWRESTORED, False)):
+        app = App(models.load("isostatic"))
+        for kind in (event, pygame.QUIT):
+            pygame.event.post(pygame.event.Event(kind))
+        app.run()
+        assert preferences.preferred("maximised") is maximised
+        assert (preferences.preferred_place() == (30, 40, 800, 600)) is maximised

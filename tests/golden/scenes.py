@@ -159,7 +159,7 @@ def _force_method(*keys: str) -> Scene:
         session = pressed(window, "k", source="hyperstatic")
         for key in keys:
             if key == "click":
-                model, _ = session.focus
+                model, _ = session.stages[0]
                 between = model.rods["BD"].between
                 x, y = (drawn_positions(model)[list(between)] * [[0.7], [0.3]]).sum(axis=0).tolist()
                 session.click(x, y)
@@ -173,7 +173,7 @@ def _force_method(*keys: str) -> Scene:
 def _mechanism_refused(window: Window) -> Session:
     """An isostatic structure without one of its rods moves."""
     session = pressed(window, "k", "k")
-    model, _ = session.focus
+    model, _ = session.stages[0]
     session.click(*drawn_positions(model)[list(model.rods["AB"].between)].mean(axis=0).tolist())
     return session
 

@@ -143,7 +143,7 @@ def test_one_can_point_and_click_in_the_scene_of_a_mod(unloaded: None) -> None:
     session = Session.open("pendulum", mods=[FOLDER / "countdown"])
     session.press("y")
     pixel = session.point(0.5, 0.25)
-    assert session.focus[1].pointer == pixel
+    assert session.stages[0][1].pointer == pixel
     session.click(0.5, 0.25)
     session.drag((0.0, 0.0), (0.5, 0.0))
     session.frame(0.5)

@@ -142,7 +142,7 @@ class Fuzz:
 
     def _place(self) -> Vector:
         """A pixel: mostly an element or near one."""
-        model, view = self.session.focus
+        model, view = self.session.stages[0]
         viewport = self.session.view.camera.viewport
         pixels = view.camera.to_pixels(drawn_positions(model)) if model.particles.count else np.empty((0, 2))
         near = pixels[np.isfinite(pixels).all(axis=1) & (np.abs(pixels) < 1e6).all(axis=1)]

@@ -134,9 +134,16 @@ def assembled(document: Document) -> tuple[np.ndarray, np.ndarray, np.ndarray, n
     held = np.array(
         [[*p.get("fixed", (False, False)), p.get("fixed_rotation", False)] for p in particles]
     ).ravel()
+    matrix += np.diag(springs_of(particles))
     rigid = {of.places[end] for of in members for end in (2, 5) if of.springs.get(end, 1.0)}
     still = np.array([i % 3 == 2 and i not in rigid for i in range(size)])
     return matrix, load + applied, held, still, members
+
+
+def springs_of(particles: list[Document]) -> np.ndarray:
+    """The stiffness of elastic supports, of all coordinates."""
+    springs = [[*p.get("support_springs", (0.0, 0.0)), p.get("rotation_spring", 0.0)] for p in particles]
+    return np.array(springs, dtype=float).ravel()
 
 
 def solve(document: Document) -> Found:
@@ -147,7 +154,7 @@ def solve(document: Document) -> Found:
     placed = [[*p.get("displacement", (0.0, 0.0)), p.get("rotation", 0.0)] for p in particles]
     moved = np.where(held & ~still, np.array(placed).ravel(), 0.0)
     moved[free] = np.linalg.solve(matrix[np.ix_(free, free)], (load - matrix @ moved)[free])
-    reaction = np.where(held, matrix @ moved - load, 0.0).reshape(-1, 3)
+    reaction = (np.where(held, matrix @ moved - load, 0.0) - springs_of(particles) * moved).reshape(-1, 3)
     names = [particle["name"] for particle in particles]
     of_rods = {rod["name"]: end_forces(of, moved) for rod, of in zip(rods, members, strict=True)}
     return Found(
@@ -220,6 +227,7 @@ def natural_frequencies(document: Document, parts: int) -> np.ndarray:
         for place in (3 * row[name], 3 * row[name] + 1):
             mass[place, place] = weight + sum(of[place, place] for of in along)
     held = [[*p.get("fixed", (False, False)), p.get("fixed_rotation", False)] for p in particles]
+    stiffness[np.diag_indices(3 * len(particles))] += springs_of(particles)
     free = np.pad(~np.array(held).ravel(), (0, size - 3 * len(particles)), constant_values=True)
     heavy, light = free & (np.diag(mass) > 0.0), free & (np.diag(mass) == 0.0)
     inner = stiffness[np.ix_(heavy, light)] @ np.linalg.pinv(stiffness[np.ix_(light, light)])

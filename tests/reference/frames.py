@@ -76,9 +76,11 @@ def rod_energy(model: Model, row: int, shift: Any, turns: Any) -> Any:
 
 
 def energy(model: Model, displacement: Any, rotation: Any) -> Any:
-    """Elastic energy less the work of all constant forces and moments (kN·m)."""
+    """Elastic energy, of supports too, less the work of all constant forces and moments (kN·m)."""
     particles = model.particles
     total = -(particles.constant_force * displacement).sum() - (particles.constant_moment * rotation).sum()
+    total += 0.5 * (particles.support_springs * displacement**2).sum()
+    total += 0.5 * (particles.rotation_spring * rotation**2).sum()
     for row, (first, second) in enumerate(model.rods.between.astype(int).tolist()):
         shift = displacement[second] - displacement[first]
         total += rod_energy(model, row, shift, (rotation[first], rotation[second]))

@@ -37,6 +37,7 @@ PURE_RATIOS = {
     "plastic_strain",
     "bowing",
     "turning_shares",
+    "fixity",
     "strain",
     "restitution",
     "displacement_scale",

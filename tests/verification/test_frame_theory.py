@@ -62,6 +62,10 @@ def random_frame(seed: int, *, moves: bool = True) -> dict[str, Any]:
                 join(f"P{floor - 1}{bay - 1}", f"P{floor}{bay}", bends=False)
     for facts in rods:
         facts["end_springs"] = (10.0 ** lot.uniform(2.0, 4.0, 2) * (lot.random(2) < 0.2)).tolist()
+    for facts in particles:
+        free = [not held for held in (*facts.get("fixed", (False, False)), facts.get("fixed_rotation", False))]
+        x, y, turning = (10.0 ** lot.uniform(2.0, 4.0, 3) * (lot.random(3) < 0.15) * free).tolist()
+        facts |= {"support_springs": [x, y], "rotation_spring": turning}
     return model(particles, rods)
 
 

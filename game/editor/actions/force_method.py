@@ -62,8 +62,8 @@ def _pick_unknown(context: Context, guide: Guide, pixel: Vector) -> None:
     if guide.part == 1:
         raise Refusal("Press K first: part 2 asks which rod or support to release.")
     if guide.part == 2:
-        model, view = context.focus
-        hit = pick(model, view, pixel) if view.camera.viewport.contains(pixel) else None
+        _, view = context.stages[0]
+        hit = pick(guide.sets[0].model, view, pixel) if view.camera.viewport.contains(pixel) else None
         near = view.camera.to_model(pixel)
         _work(context, tr("Releasing it and solving anew"), lambda: guide.pick(hit, near))
 

@@ -19,7 +19,7 @@ from pinjoint.systems.edit.dividing import DIVISIONS, divide, divide_at
 from pinjoint.systems.edit.picking import pick_rod
 from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import share_at, weigh_along
-from pinjoint.systems.edit.supports import SUPPORTS, Held, held, support
+from pinjoint.systems.edit.supports import SPRING, SUPPORTS, Held, held, is_elastic, put_on_springs, support
 from pinjoint.systems.forms.properties import heading
 from pinjoint.systems.input.actions import ACTIONS, MENU, actions_of
 from pinjoint.systems.render.theme import load_theme
@@ -61,7 +61,7 @@ def _environment(context: Context, pixel: Vector) -> None:
 def _are_held(wanted: Held, context: Context) -> bool:
     """Whether all selected particles have a support."""
     particles = context.model.tagged(Selected, Particle)
-    return bool(particles) and all(held(particle) == wanted for particle in particles)
+    return bool(particles) and all(held(one) == wanted and not is_elastic(one) for one in particles)
 
 
 def _hold(wanted: Held, context: Context, pixel: Vector) -> None:
@@ -75,6 +75,34 @@ def _hold(wanted: Held, context: Context, pixel: Vector) -> None:
 for _wanted, (_name, _title) in SUPPORTS.items():
     _title = _title if any(_wanted) else marked("free: no support")
     offer(_name, "", _title, pressed=partial(_are_held, _wanted))(partial(_hold, _wanted))
+
+
+@offer(
+    "springs",
+    "",
+    "elastic: held by springs",
+    pressed=lambda context: {is_elastic(one) for one in context.model.tagged(Selected, Particle)} == {True},
+)
+def _springs(context: Context, pixel: Vector) -> None:
+    """Let springs hold the selected particles or, if all do so, rigid supports."""
+    particles = context.model.tagged(Selected, Particle)
+    if not particles:
+        raise Refusal("No particle is selected; click one first.")
+    tell(context, put_on_springs(context.model, particles), *particles)
+
+
+@offer(
+    "end springs",
+    "",
+    "springs at both ends",
+    pressed=lambda context: {any(one.end_springs) for one in context.model.tagged(Selected, Rod)} == {True},
+)
+def _end_springs(context: Context, pixel: Vector) -> None:
+    """Join the ends of the selected rods by springs or, if all have some, as before."""
+    rods = _selected(context)
+    back = all(any(rod.end_springs) for rod in rods)
+    context.model.assign(rods, "end_springs", [(0.0, 0.0) if back else (SPRING, SPRING)] * len(rods))
+    tell(context, tr("no springs at its ends") if back else tr("joined by springs"), *rods)
 
 
 def _selected(context: Context) -> list[Rod]:

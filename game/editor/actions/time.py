@@ -151,6 +151,8 @@ def _settle(context: Context, pixel: Vector) -> None:
     """Go to the static equilibrium under the full load."""
     if context.scene == STATICS:
         raise Refusal("What is shown is the equilibrium already. Z changes the theory, Q leaves statics.")
+    if context.model.particles.count == 0:
+        raise Refusal("There is nothing to solve yet; draw a structure with P and L, or open one with D.")
     context.settle()
     context.view.follow(context.model, clear=True)
 

@@ -7,9 +7,10 @@ from operator import attrgetter
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import LANGUAGES, language, speak, tr
+from pinjoint.components.units import PRESETS, show_in, units_on_screen
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import saving
-from pinjoint.systems.input.actions import ACTIONS, EVERY, IN_PICTURES, Perform, actions_of
+from pinjoint.systems.input.actions import ACTIONS, EVERY, IN_PICTURES, LIVE, Perform, actions_of
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.help import help_pages
 
@@ -55,6 +56,15 @@ def _next_language(context: Context, pixel: Vector) -> None:
     speak(codes[(codes.index(language()) + 1) % len(codes)])
     context.scenes.active.say_again(context)
     context.notice = tr("Language: {language}", language=LANGUAGES[language()])
+
+
+@action("next units", "shift+f2", "change the units: cm kN, m kN mm, N mm", LIVE)
+def _next_units(context: Context, pixel: Vector) -> None:
+    """The preset of units after the present one, in which numbers are shown and typed from now on."""
+    names = list(PRESETS)
+    last = names.index(units_on_screen()) if units_on_screen() in names else -1
+    show_in(names[(last + 1) % len(names)])
+    context.notice = tr("Units: {units}", units=units_on_screen())
 
 
 def _magnify(by: int, context: Context, pixel: Vector) -> None:

@@ -9,7 +9,7 @@ from decimal import DecimalException
 from typing import Any, ClassVar
 
 from pinjoint.components import written
-from pinjoint.components.field import CM, Field, Vector
+from pinjoint.components.field import CM, Field, Vector, on_screen
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.load import SpanLoad
@@ -76,7 +76,7 @@ class Drawing(Gesture):
     @property
     def unit(self) -> tuple[str, str]:
         """The unit of what is typed inside the program, and that of numbers that name none."""
-        return "m", CM[0]
+        return "m", on_screen(CM[0])[0]
 
     def accept(self, context: Context, pixel: Vector) -> None:
         """End as it is typed; why that is refused is said beside what was typed, which stays."""
@@ -229,7 +229,7 @@ class DrawArrow(Drawing):
 
     @property
     def unit(self) -> tuple[str, str]:
-        return self._field.unit, self._field.shown[0]
+        return self._field.unit, self._field.on_screen[0]
 
     def value(self, context: Context, pixel: Vector) -> Any:
         """What is typed, of which a number alone points up, or what the arrow to a pixel stands for."""
@@ -238,7 +238,7 @@ class DrawArrow(Drawing):
 
     def shown(self, value: Any) -> str:
         """The text of a value."""
-        return f"{written.vector(value, written.DIGITS)} {self.unit[1]}"
+        return written.stated(value, self._field.shown[0], written.DIGITS)
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value, elements = self.value(context, pixel), [one for one in self.elements if one.exists]
@@ -281,7 +281,7 @@ class DrawDistributedForce(DrawArrow):
     says = marked("{rods}: distributed load {load}")
 
     def shown(self, value: Any) -> str:
-        return f"{written.vector(value)} {self.unit[1]}"
+        return written.stated(value, self._field.shown[0])
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         made = super().preview(context, pixel)
@@ -373,7 +373,7 @@ class DrawMoment(DrawArrow):
 
     def shown(self, value: float) -> str:
         way = tr("counter-clockwise") if value > 0.0 else tr("clockwise") if value < 0.0 else ""
-        return joined([f"{written.given(abs(value))} {self.unit[1]}", way], ", ")
+        return joined([written.stated(abs(value), self._field.shown[0]), way], ", ")
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         value, start = self.value(context, pixel), self.start(context)

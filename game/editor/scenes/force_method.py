@@ -136,7 +136,7 @@ class ForceMethod(Scene):
             return
         self.finish()
         for moving in self._moving():
-            moving.view.forces_known = moving.simulation is None or context.has_program(moving.simulation)
+            moving.view.forces_known = moving.simulation is None or context.readiness.lets(moving.simulation)
             if moving.view.forces_known:
                 moving.advance(elapsed)
 
@@ -148,16 +148,13 @@ class ForceMethod(Scene):
 
     # --- what is seen ------------------------------------------------------------------------------
 
-    def focus(self, context: Context) -> tuple[Model, View]:
-        """Set 1, from which an unknown is picked."""
-        self._lay_out(context)
-        if self.shown_guide is None:
-            return self._blank, self._foot
-        return self.shown_guide.sets[0].model, self.shown_guide.sets[0].view
-
     def stages(self, context: Context) -> list[tuple[Model, View]]:
-        """The message with the legend of all sets, the sets, and the working with the status line."""
-        return [(self._blank, self._head), *self._lay_out(context), (self._blank, self._foot)]
+        """The sets, the message with the legend of all sets, and the working with the status line.
+
+        What cannot be solved comes last, since nothing is picked from it.
+        """
+        sets, around = self._lay_out(context), [(self._blank, self._head), (self._blank, self._foot)]
+        return [*sets, *around] if self.shown_guide is not None else [*around, *sets]
 
     def _lay_out(self, context: Context) -> list[tuple[Model, View]]:
         """Place message, sets and equations in the window; returns the stages of the sets."""

@@ -130,7 +130,7 @@ class Properties(FormScene):
         return self._aside(context) is None
 
     def stages(self, context: Context) -> Sequence[Stage]:
-        model, view = self.focus(context)
+        model, view = self._beside(context)
         self._read_results(context)
         if view.aside is None:
             return [(self.form, view)]
@@ -153,7 +153,7 @@ class Properties(FormScene):
             self._made = made
             properties.refresh(self.form, model, context.selected)
 
-    def focus(self, context: Context) -> tuple[Model, View]:
+    def _beside(self, context: Context) -> tuple[Model, View]:
         """The model where it was, and what is seen of it beside the boxes."""
         aside, view = self._aside(context), context.view
         if aside is None:
@@ -179,7 +179,7 @@ class Properties(FormScene):
         """A click on another element shows its boxes."""
         if not self.typing.accept() or self.viewport(context).contains(pixel):
             return
-        hit = pick(*self.focus(context), pixel)
+        hit = pick(*self._beside(context), pixel)
         if hit is not None and [hit] != context.selected:
             self.turn_to(context, hit)
 

@@ -46,7 +46,7 @@ class Flight:
         self.model = model
         self.measures = np.zeros(len(Measure))
         self.unbalanced = np.zeros((model.particles.count, 2))
-        self.unbalanced_moment = np.zeros(0)  # nothing turns
+        self.unbalanced_moment = np.zeros(model.particles.count)  # nothing turns
         self._impacts = impacts
         self._laws = laws
         for module in (EVENTS, HORIZONS):

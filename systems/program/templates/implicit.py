@@ -85,6 +85,8 @@ def tangent(time, dt, by_x, by_v, displacement, velocity, direction, rod_work, d
     for i in range(displacement.shape[0]):
         for d in range(D):
             diagonal[i, d] = 0.001 * insert(mass)
+            if SPRUNG:
+                diagonal[i, d] += by_x * particles_support_springs[i, d]
         beside[i, 0] = 0.0
         insert(particles)
     insert(rods)

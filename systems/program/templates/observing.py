@@ -37,6 +37,11 @@ def measure(displacement, velocity, force, resisting, measures, *columns):
             rolled = max(rolled, abs(displacement[i, 2] * per_arm[0]))
     elastic = 0.0
     stiffest = 0.0
+    if SPRUNG:
+        for i in range(displacement.shape[0]):
+            for d in range(D):
+                elastic += particles_support_springs[i, d] * displacement[i, d] * displacement[i, d]
+                stiffest = max(stiffest, particles_support_springs[i, d])
     insert(rods)
     insert(pairs)
     round_off = EPSILON * stiffest * moved
@@ -71,4 +76,7 @@ def observe(time, dt, displacement, velocity, applied, reaction, forces, power, 
     for i in range(displacement.shape[0]):
         for d in range(D):
             reaction[i, d] = 0.0 - (force[i, d] + resisting[i, d]) if fixed[i, d] else 0.0
+            if SPRUNG:
+                applied[i, d] += particles_support_springs[i, d] * displacement[i, d]
+                reaction[i, d] -= particles_support_springs[i, d] * displacement[i, d]
     insert(rods)

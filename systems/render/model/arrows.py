@@ -314,7 +314,7 @@ def _write_forces(
     few = len(value) <= FEW_VALUES
     seen = np.flatnonzero(sheet.sees(0.5 * (start + end)))
     shown, worth = most_important(sheet, field, which, value, seen)
-    texts = [said(sheet, size, "kN" if few else "") for size in np.abs(value[shown]).tolist()]
+    texts = [said(sheet, size, "kN", bare=not few) for size in np.abs(value[shown]).tolist()]
     font = sheet.font(12.0 if few else 11.0)
     half, start, end = half_sizes(sheet, texts, font), start[shown], end[shown]
     places = by_arrows(half, start, end, _BY_ARROW * sheet.unit)
@@ -334,5 +334,5 @@ def _write_forces(
             own=key,
             leads=leads,
             size=font,
-            short=said(sheet, abs(float(value[index])), "") if few else "",
+            short=said(sheet, abs(float(value[index])), "kN", bare=True) if few else "",
         )

@@ -436,7 +436,7 @@ def _written(sheet: Sheet, quantity: str, value: float, nothing: float, few: boo
     """A value as it is told: moments without sign, since their side says it; shear with both."""
     size = abs(value) if quantity == MOMENT else value
     sign = "+" if quantity == SHEAR and value > nothing else ""
-    return f"{sign}{said(sheet, size, _UNITS[quantity] if few else '', nothing)}"
+    return f"{sign}{said(sheet, size, _UNITS[quantity], nothing, bare=not few)}"
 
 
 def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:

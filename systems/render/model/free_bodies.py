@@ -67,7 +67,7 @@ def _draw_rods(sheet: Sheet, known: Apart, long: Truths, largest: float) -> None
     _draw_bending(sheet, known, bearing, (start, end), along, largest)
     for index in np.flatnonzero(long & ~bearing).tolist():
         row, own = int(rods[index]), (start[index], end[index])
-        _write(sheet, "0 kN", beside, sheet.theme.zero, ("rods.end0", row), ("rods", row), own)
+        _write(sheet, written.force(0.0), beside, sheet.theme.zero, ("rods.end0", row), ("rods", row), own)
     for pulled, name in ((True, "tension"), (False, "compression")):
         bears = long & ((force[rods] > SMALLEST) if pulled else (force[rods] < -SMALLEST))
         which = np.flatnonzero(bears)

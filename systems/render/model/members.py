@@ -34,7 +34,17 @@ from pinjoint.systems.render.model.arrows import (
     lengths,
 )
 from pinjoint.systems.render.model.sheet import Sheet
-from pinjoint.systems.render.model.values import FIRST, SMALLEST, by_arrows, half_sizes, off, said, write
+from pinjoint.systems.render.model.values import (
+    FIRST,
+    SMALLEST,
+    by_arrows,
+    half_sizes,
+    off,
+    said,
+    write,
+    write_around,
+    write_spring,
+)
 from pinjoint.systems.render.symbols import RIM
 from pinjoint.systems.render.theme import Colour
 
@@ -172,7 +182,7 @@ def _draw_points(sheet: Sheet, spans: Spans) -> None:
         draw_arrows(sheet, of, tail, along, length, colour, ("span_loads.force", load[some]))
         sheet.explain("load", tail, tip)
         for k, value in enumerate(size.tolist()):
-            text, key = f"{written.given(value, written.DIGITS)} kN", ("span_loads.force", int(load[some[k]]))
+            text, key = written.stated(value, "kN", written.DIGITS), ("span_loads.force", int(load[some[k]]))
             places = by_arrows(half_sizes(sheet, [text])[0], tip[k], tail[k], 3.0 * u)
             leads = np.array([tail[k], 0.5 * (tail[k] + tip[k])]), -along[k]
             write(
@@ -254,7 +264,7 @@ def _shares_seen(sheet: Sheet, spans: Spans, length: Values) -> tuple[Values, Va
 def _label_row(
     sheet: Sheet, key: tuple[str, int], row: int, tails: Points, out: Points, size: float, shifted: bool
 ) -> None:
-    text, u = f"{written.given(size, written.DIGITS)} kN/m", sheet.unit
+    text, u = written.stated(size, "kN/m", written.DIGITS), sheet.unit
     way = tails[-1] - tails[0]
     if shifted:
         out = np.array([way[1], -way[0]]) / max(float(np.hypot(*way)), 1e-9)
@@ -355,37 +365,10 @@ def write_moment(
     of: Owner | None = None,
 ) -> None:
     """Write the size of a moment outside its arrow; text: in place of the number as a person gave it; of: not a particle."""
-    text = text or f"{written.given(abs(moment), written.DIGITS)}{' kN·m' if sheet.view.has_units else ''}"
+    bare = written.given(abs(moment), written.DIGITS)
+    text = text or (written.stated(abs(moment), "kN·m", written.DIGITS) if sheet.view.has_units else bare)
     angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
     out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
     short = text if key[0] == "particles.reaction_moment" else ""
-    whose = key, of or ("particles", key[1])
-    _write_around(sheet, at, radius, out, text, colour, whose, abs(moment), short)
-
-
-def write_spring(
-    sheet: Sheet, at: Points, radius: float, stiffness: float, unit: str, key: tuple[str, int], of: Owner
-) -> None:
-    """Write the stiffness of a spring beside its symbol."""
-    angle = np.radians([60.0, 120.0, -60.0, -120.0, 90.0, 0.0, 180.0, -90.0])
-    out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
-    text = f"k = {written.given(stiffness, written.DIGITS)}{f' {unit}' if sheet.view.has_units else ''}"
-    _write_around(sheet, at, radius, out, text, sheet.theme.ink, (key, of), 0.0, text)
-
-
-def _write_around(
-    sheet: Sheet,
-    at: Points,
-    radius: float,
-    out: Points,
-    text: str,
-    colour: Colour,
-    whose: tuple[tuple[str, int], Owner],
-    worth: float,
-    short: str,
-) -> None:
-    """Write a value outside a circle, at one of some directions (k, 2) from it. whose: its key and what it belongs to."""
-    near = off(at, out, radius + 2.0 * sheet.unit, half_sizes(sheet, [text]))
-    places, rank = np.concatenate([near, near + 8.0 * sheet.unit * out]), FIRST - worth
-    (key, of), leads = whose, (at + radius * out[:5], out[0])
-    write(sheet, text, places, colour, key, of, rank=rank, own=key, leads=leads, short=short)
+    whose = key, of or ("particles", key[1]), key
+    write_around(sheet, at, radius, out, text, colour, whose, abs(moment), short)

@@ -6,14 +6,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.model import Model
+from pinjoint.components.particle import is_sprung
 from pinjoint.components.rod import rigid_joints
 from pinjoint.systems.render.marks import Points, Rows, Stamps, Truths, Values
 from pinjoint.systems.render.model.sheet import DIRECTIONS, MANY, Sheet
+from pinjoint.systems.render.model.values import write_spring
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 
 RIGHT, DOWN, LEFT, UP = range(4)
 NO_SUPPORT = -1
 _RELUCTANCE = np.array([0.45, 0.0, 0.45, 0.8])  # by side, to have a support there
+_SPIRAL = 11.0  # points, radius of a rotation spring
+MOST = 200  # springs of a kind whose stiffness is told
 _ALIKE = 1e-6  # differences of crowding that are rounding
 
 
@@ -47,7 +51,17 @@ def support_sides(sheet: Sheet) -> NDArray[np.int64]:
     clamped = np.flatnonzero(fixed.all(axis=1) & clamps(sheet.model))
     opposite = np.roll(crowd[clamped], 2, axis=1)
     sides[clamped] = np.argmin(crowd[clamped] - opposite + _RELUCTANCE / 10.0, axis=1)
+    if is_sprung(sheet.model):
+        for other in _sides_of_springs(sheet):
+            sides = np.where(sides == NO_SUPPORT, other, sides)
     return sides
+
+
+def _sides_of_springs(sheet: Sheet) -> list[NDArray[np.int64]]:
+    """The sides on which springs along y, then along x, stand."""
+    sprung, x = sheet.model.particles.support_springs > 0.0, sheet.model.particles.position[:, 0]
+    crowd, right = crowding(sheet, np.flatnonzero(sprung.any(axis=1))), x > 0.5 * (x.min() + x.max())
+    return [freest_sides(sprung & along, crowd, right) for along in ([False, True], [True, False])]
 
 
 def clamps(model: Model) -> Truths:
@@ -77,29 +91,62 @@ def freest_sides(fixed: Truths, crowd: Values, right: Truths) -> NDArray[np.int6
 
 
 def draw_supports(sheet: Sheet, sides: NDArray[np.int64]) -> None:
-    """Triangles on a line (one direction) or on a plate (both), touching the particles from outside.
+    """Triangles on a line (one direction) or on a plate (both), touching the particles from outside; springs on the ground.
 
     What cannot turn either stands on hatched ground (clamped) or on a plate that rolls (guided).
     """
     rows = sheet.particles
-    supported, held = rows[sides[rows] != NO_SUPPORT], clamps(sheet.model)
+    rigid, held = sheet.model.particles.fixed[rows].any(axis=1), clamps(sheet.model)
+    supported = rows[rigid & (sides[rows] != NO_SUPPORT)]
     kinds = 2 * held[supported] + sheet.model.particles.fixed[supported].all(axis=1)
-    size = SUPPORT_DEPTH * sheet.unit
     for side in range(4):
         for kind, symbol in enumerate(("roller", "pinned", "guided", "clamped")):
             of = supported[(sides[supported] == side) & (kinds == kind)]
             if not len(of):
                 continue
-            apex = sheet.centres[of] + DIRECTIONS[side] * (sheet.radii[of] - sheet.unit)[:, None]
-            _stamp(sheet, symbol, apex, side, of)
-            middle = apex + DIRECTIONS[side] * size / 2
-            sheet.occupancy.parts.add(("particles", of), middle, middle, size / 2)
-            sheet.occupancy.block_squares(middle[:MANY], np.full(len(middle[:MANY]), size / 2))
-    if len(turning := rows[held[rows] & (sides[rows] == NO_SUPPORT)]):
+            _stand(sheet, symbol, side, of)
+    if is_sprung(sheet.model):
+        _draw_springs(sheet, rows)
+    if len(turning := rows[held[rows] & ~rigid]):
         _stamp(sheet, "unturned", sheet.centres[turning], 0, turning)
         half = np.full(len(turning), 10.0 * sheet.unit)
         sheet.occupancy.parts.add(("particles", turning), sheet.centres[turning], sheet.centres[turning], half)
         sheet.occupancy.block_squares(sheet.centres[turning], half)
+
+
+def _draw_springs(sheet: Sheet, rows: Rows) -> None:
+    """Springs on the ground along y and x, spirals around what they hold from turning, and their stiffness."""
+    particles, u = sheet.model.particles, sheet.unit
+    for axis, sides in zip((1, 0), _sides_of_springs(sheet), strict=True):
+        for side in range(4):
+            if len(of := rows[sides[rows] == side]):
+                middle = _stand(sheet, "spring", side, of)
+                springs = particles.support_springs[of, axis].tolist()
+                for at, row, stiffness in zip(middle[:MOST], of.tolist(), springs, strict=False):
+                    key, owner = ("particles.support_springs", 2 * row + axis), ("particles", row)
+                    write_spring(sheet, at, 0.5 * SUPPORT_DEPTH * u, stiffness, "kN/m", key, owner)
+    if len(of := rows[(particles.rotation_spring[rows] > 0.0) & rigid_joints(sheet.model)[rows]]):
+        at, size = sheet.centres[of], _SPIRAL * u
+        ink, hollow = sheet.theme.ink, sheet.theme.hollow
+        sheet.marks.append(Stamps("spiral", at, size, u, ink, hollow, of=("particles", of)))
+        sheet.occupancy.block_squares(at[:MANY], np.full(len(at[:MANY]), size))
+        sheet.explain("spring", at, at)
+        for place, row in zip(at[:MOST], of.tolist(), strict=False):
+            key, stiffness = ("particles.rotation_spring", row), float(particles.rotation_spring[row])
+            write_spring(sheet, place, size, stiffness, "kN·m/rad", key, ("particles", row))
+
+
+def _stand(sheet: Sheet, symbol: str, side: int, of: Rows) -> Points:
+    """A symbol at a side of some particles; returns the middles of the symbols."""
+    size = SUPPORT_DEPTH * sheet.unit
+    coiled = (sheet.model.particles.rotation_spring[of] > 0.0) & rigid_joints(sheet.model)[of]
+    rim = np.where(coiled, _SPIRAL * sheet.unit, sheet.radii[of] - sheet.unit)
+    apex = sheet.centres[of] + DIRECTIONS[side] * rim[:, None]
+    _stamp(sheet, symbol, apex, side, of)
+    middle: Points = apex + DIRECTIONS[side] * size / 2
+    sheet.occupancy.parts.add(("particles", of), middle, middle, size / 2)
+    sheet.occupancy.block_squares(middle[:MANY], np.full(len(middle[:MANY]), size / 2))
+    return middle
 
 
 def _stamp(sheet: Sheet, symbol: str, at: Points, side: int, rows: Rows) -> None:

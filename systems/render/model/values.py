@@ -28,13 +28,11 @@ def half_sizes(sheet: Sheet, texts: Iterable[str], size: int = 0) -> Points:
     return np.array([half_size(text, size, "semibold", sheet.unit) for text in texts]).reshape(-1, 2)
 
 
-def said(sheet: Sheet, value: float, unit: str, nothing: float = SMALLEST) -> str:
-    """A computed value with its unit, "kN" or "kN·m", if any; as short as it is where the view wants none: "1", "0.7071"."""
+def said(sheet: Sheet, value: float, usual: str, nothing: float = SMALLEST, *, bare: bool = False) -> str:
+    """A computed value in a usual unit, with that on screen unless it is bare; as short as it is where a view wants none."""
     if not sheet.view.has_units:
         return written.given(value if abs(value) > nothing else 0.0, written.DIGITS)
-    if not unit:
-        return written.number(value, nothing=nothing)
-    return (written.force if unit == "kN" else written.moment)(value, nothing=nothing)
+    return written.amount(value, usual, nothing=nothing, bare=bare)
 
 
 def reach(way: Points, half: Points) -> Values:
@@ -111,3 +109,32 @@ def write(
     label = Label(text, places, font, colour, rank, "semibold", backing, lines, key, of, own, short=short)
     sheet.labels.append(label._replace(anchors=leads[0], outward=leads[1]) if leads else label)
     sheet.values[key[0]] += 1
+
+
+def write_spring(
+    sheet: Sheet, at: Points, radius: float, stiffness: float, unit: str, key: tuple[str, int], of: Owner
+) -> None:
+    """Write the stiffness of a spring beside its symbol."""
+    angle = np.radians([60.0, 120.0, -60.0, -120.0, 90.0, 0.0, 180.0, -90.0])
+    out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
+    bare = written.given(stiffness, written.DIGITS)
+    text = f"k = {written.stated(stiffness, unit, written.DIGITS) if sheet.view.has_units else bare}"
+    write_around(sheet, at, radius, out, text, sheet.theme.ink, (key, of, of), 0.0, text)
+
+
+def write_around(
+    sheet: Sheet,
+    at: Points,
+    radius: float,
+    out: Points,
+    text: str,
+    colour: Colour,
+    whose: tuple[Owner, Owner, Owner],
+    worth: float,
+    short: str,
+) -> None:
+    """Write a value outside a circle, at one of some directions (k, 2) from it. whose: key, of and own of the label."""
+    near = off(at, out, radius + 2.0 * sheet.unit, half_sizes(sheet, [text]))
+    places, rank = np.concatenate([near, near + 8.0 * sheet.unit * out]), FIRST - worth
+    (key, of, own), leads = whose, (at + radius * out[:5], out[0])
+    write(sheet, text, places, colour, key, of, rank=rank, own=own, leads=leads, short=short)

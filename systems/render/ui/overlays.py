@@ -12,6 +12,7 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.bent import farthest
 from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.components.field import on_screen
 from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES, THEORIES
@@ -241,10 +242,10 @@ _BAR_WIDTH = 70.0  # points, of a scale of colours
 _RESULTS = {"tension", "compression", "moment", "shear", "reaction", "reaction moment", "utilisation"}
 _ABOVE, _PAD, _BETWEEN = 10.0, 9.0, 14.0  # points: to the edges, inside a row, between its entries
 MEANINGS = {
-    "tension": marked("tension (kN)"),
-    "compression": marked("compression (kN)"),
-    "moment": marked("M on the tension side (kN·m)"),
-    "shear": marked("shear force V (kN)"),
+    "tension": marked("tension"),
+    "compression": marked("compression"),
+    "moment": marked("M on the tension side"),
+    "shear": marked("shear force V"),
     "yielding": marked("yielding"),
     "utilisation": marked("utilisation 0 to 100 %"),
     "axial utilisation": marked("utilisation 0 to 100 %, of N alone where the depth is unknown"),
@@ -262,6 +263,10 @@ MEANINGS = {
 }
 _SCALES = ("utilisation", "axial utilisation")
 UNITS = {
+    "tension": "kN",
+    "compression": "kN",
+    "moment": "kN·m",
+    "shear": "kN",
     "load": "kN",
     "load per length": "kN/m",
     "load moment": "kN·m",
@@ -276,7 +281,7 @@ def meanings_of(legend: Sequence[str]) -> dict[str, str]:
     """The colours of a legend, in order, and what they mean, with the units that occur."""
     found = {}
     for name, meaning in MEANINGS.items():
-        units = [unit for of, unit in UNITS.items() if of.split(" ")[0] == name and of in legend]
+        units = [on_screen(unit)[0] for of, unit in UNITS.items() if of.split(" ")[0] == name and of in legend]
         if units or name in legend:
             said = tr(meaning)
             found[name] = f"{said} ({', '.join(units)})" if units else said

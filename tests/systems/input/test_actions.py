@@ -181,7 +181,7 @@ def _over_a_rod(session: Session) -> None:
     """Part 2, the pointer over BD."""
     _part(2)(session)
     session.point(0.5, 1.0)
-    session.view.pointer = session.focus[1].pointer
+    session.view.pointer = session.stages[0][1].pointer
 
 
 def _window(session: Session) -> None:

@@ -81,6 +81,13 @@ def test_trusses_know_nothing_of_it(name: str, form: str) -> None:
     assert not OF_TURNING.findall(source)
 
 
+def test_slopes_without_moments_are_read_only_where_rods_are_warmer_on_one_side() -> None:
+    session = Session(parse(beam()))
+    assert "rods_initial_slopes" in session.simulation.programs.compiled.source
+    session.model.assign(list(session.rods), "temperature_gradient", 0.0)
+    assert "rods_initial_slopes" not in session.simulation.programs.compiled.source
+
+
 @pytest.mark.parametrize("name", ["velocity_verlet", "semi_implicit_euler", "taylor2"])
 def test_every_form_has_the_same_bits(name: str) -> None:
     states = []

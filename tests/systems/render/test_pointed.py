@@ -123,12 +123,12 @@ def test_it_covers_no_value_in_the_narrow_sets_of_the_force_method(size: tuple[i
         session.press(key)
     told_of = 0
     for name in ("AB", "AC", "CD", "DA"):
-        model, view = session.focus
+        model, view = session.stages[0]
         places = drawn_positions(model)[list(model.rods[name].between)]
         session.view.pointer = session.point(*(0.7 * places[0] + 0.3 * places[1]).tolist())
         model.tag_only([model.rods[name]], Hovered)
         session.update_view()
-        model, view = session.focus
+        model, view = session.stages[0]
         picture = compose(model, view, LIGHT)
         title = model.describe(model.rods[name])
         at = max((i for i, m in enumerate(picture.marks) if isinstance(m, Text) and m.text == title), default=0)
