@@ -82,7 +82,8 @@ class Preview:
     kind: "rod", "force", "distributed force", "moment", "velocity", "hinge", "roller", "pinned", "guided", "clamped",
     "pull" or "box"; "": none. start, end: points of the picture (m); of a box, two opposite corners; of a support, its
     point and towards its ground. label: its value with its unit, or "". along: the ends of the rods that bear it.
-    typed: what is typed of it at the pointer, or "". problem: why that was refused.
+    joints: points (m) where it is joined to members. typed: what is typed of it at the pointer, or "". problem: why that was
+    refused.
     """
 
     kind: str
@@ -90,6 +91,7 @@ class Preview:
     end: Vector
     label: str = ""
     along: tuple[tuple[Vector, Vector], ...] = ()
+    joints: tuple[Vector, ...] = ()
     typed: str = ""
     problem: str = ""
 
@@ -249,7 +251,7 @@ class Hit(Rectangle):
 class View:
     """How one model is shown in one viewport.
 
-    rigid: rods are drawn with rigid ends.
+    rigid: rods are drawn with rigid ends. joins: they are joined to members that they meet, which they cross else.
     heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements. quantity: which force
     diagrams show where rods bend, "N", "M" or "V".
     legend: show the meaning of colours. explains_all: of those of the pictures beside this one, too.
@@ -280,13 +282,15 @@ class View:
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     provisional: why what is shown is no equilibrium, which makes results pale; "": it is one.
     card: a task of a lesson, in place of a model. cuts: rods that are drawn cut. has_units: values of forces tell theirs.
-    steady: a hand moves something, so that labels stay beside what they belong to.
+    steady: a hand moves something, so that labels stay beside what they belong to. arrow_scales: of vectors by Field, how
+    much a point of an arrow is that is drawn or dragged.
     """
 
     camera: Camera = field(default_factory=Camera)
     heading: str = ""
     all_diagrams: bool = False
     rigid: bool = False
+    joins: bool = True
     quantity: str = AXIAL
     forces_known: bool = True
     legend: bool = True
@@ -329,6 +333,7 @@ class View:
     cuts: tuple[Cut, ...] = ()
     has_units: bool = True
     steady: bool = False
+    arrow_scales: dict[str, float] = field(default_factory=dict)
 
     @property
     def looks(self) -> tuple[object, ...]:

@@ -158,7 +158,7 @@ class Session(Headless):
         """Show the document that is open now, with its sliders, from the first frame on."""
         model, view = self.model, self.view
         self.scenes.show_state(self)
-        view.sliders = sliders_of(self)
+        view.sliders, view.arrow_scales = sliders_of(self), {}
         self._make_room()
         view.fit(model)
         if model.settings.diagrams != NO_DIAGRAMS:

@@ -6,14 +6,13 @@ import logging
 import uuid
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 
 from pinjoint.commands.arguments import Parser
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr
 from pinjoint.documents.library import data_folder
 from pinjoint.documents.models import lock_file
-from pinjoint.mods.loading import load
+from pinjoint.mods.loading import folder_of, load
 from pinjoint.mods.mod import LOG, ModError
 from pinjoint.streams import tell
 
@@ -34,13 +33,14 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
     parser.add_argument("--mods", action="append", default=[], metavar="DIR")
     parser.add_argument("--no-mods", action="store_true")
     options, others = parser.parse_known_args(list(words))
+    options.mods = [folder_of(folder) for folder in options.mods]
     for folder in options.mods:
-        if not Path(folder).is_dir():
+        if not folder.is_dir():
             raise ModError("--mods {folder}: there is no such folder; check its name.", folder=folder)
     unsafe = not options.no_mods and others[:1] not in [[name] for name in EXTENSIONS.commands] and crashed()
     if unsafe:
         EXTENSIONS.faults.append(tr(LEFT_OUT))
-    named = {Path(folder).resolve() for folder in options.mods}
+    named = {folder.resolve() for folder in options.mods}
     computes = set(others[:1]) & set(EXTENSIONS.commands) - {"open"}
     for mod in load(options.mods, installed=not (options.no_mods or unsafe)):
         if mod.off and others[:1] != ["mods"]:

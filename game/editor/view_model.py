@@ -20,7 +20,7 @@ from pinjoint.components.tags import Hovered
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from pinjoint.editor.context import Context, Waiting
-from pinjoint.editor.gestures.drawing import Drawing, DrawRod
+from pinjoint.editor.gestures.drawing import Drawing, DrawRod, onto_member
 from pinjoint.editor.gestures.moving import Placing
 from pinjoint.editor.readouts import distance_at, pinned, readouts
 from pinjoint.editor.sliders import slider_stack
@@ -28,6 +28,7 @@ from pinjoint.editor.toolbar import toolbar_of
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
+from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import is_rigid
 from pinjoint.systems.forms.results import along, told
 from pinjoint.systems.input.actions import ACTIONS, LIVE
@@ -238,7 +239,7 @@ def _flashes(context: Context) -> NDArray[np.float64]:
 def _preview(context: Context) -> Preview | None:
     try:
         if context.gesture is None:
-            return _end_pointed_at(context, context.view.pixel) if context.scene in LIVE else None
+            return _pointed_at(context, context.view.pixel) if context.scene in LIVE else None
         gesture = context.gesture
         if not (isinstance(gesture, Drawing) and gesture.typed):
             return gesture.preview(context, context.view.pixel)
@@ -262,9 +263,18 @@ def _hint_of_tool(context: Context) -> str:
     return tr(ACTIONS[tool].hint) if tool else ""
 
 
-def _end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
-    """With the tool for hinges in hand: what a click would make of the end under the pointer."""
+def _pointed_at(context: Context, pixel: Vector) -> Preview | None:
+    """With a tool in hand: where a rod or a particle would begin, or what a click makes of the end under the pointer."""
     model, view = context.model, context.view
+    if view.tool in ("place", DrawRod.tool) and view.pointer is not None and not view.covers(pixel):
+        if pick_particle(model, view, pixel) is not None:
+            return None
+        at = (
+            onto_member(context, pixel)
+            if view.tool == DrawRod.tool
+            else snapped(model, view, view.camera.to_model(pixel))
+        )
+        return Preview("hinge", at, at, written.place(at, written.DIGITS))
     if view.tool != "hinge" or pick_particle(model, view, pixel) is not None:
         return None
     found = pick_end(model, view, pixel)

@@ -9,7 +9,7 @@ import numpy as np
 from pinjoint.components.commands import Assign
 from pinjoint.components.field import MADE
 from pinjoint.components.model import Model
-from pinjoint.components.particle import supported
+from pinjoint.components.particle import in_support_axes, of_rigid_supports, supported, turned_supports
 from pinjoint.components.written import ROUNDING
 from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.external import External
@@ -32,7 +32,7 @@ def elastic_copy(model: Model) -> Model:
         kept = [field.name for field in table.fields_in(*MADE)] + ["plastic_strain"] * (name == "rods")
         columns = {field: table.column(field) for field in kept}
         if name == "particles":
-            columns["displacement"] = np.where(table.fixed, table.displacement, 0.0)
+            columns["displacement"] = of_rigid_supports(model, table.displacement)
             columns["rotation"] = np.where(table.fixed_rotation, table.rotation, 0.0)
         if table.kind.single:
             [one] = copy.tables[name]
@@ -90,7 +90,9 @@ def still(copy: Model, whole: Model, state: SetState) -> Model:
     if rods.bending_stiffness.any():
         copy.writable("rods.bending_stiffness")[...] *= _STIFF
     load = np.pad(External.of(copy).at(1.0), ((0, 0), (0, 1)))
-    counts = supported(copy) & (np.abs(state.reaction) > ROUNDING * largest(state.axial_force))
+    held = supported(copy)
+    held[:, :2] |= turned_supports(copy)[:, None]
+    counts = held & (np.abs(state.reaction) > ROUNDING * largest(state.axial_force))
     reaction = np.where(counts, state.reaction, 0.0)
     told = {
         "particles.reaction": reaction[:, :2],
@@ -116,7 +118,7 @@ def exact_forces(model: Model, unknowns: Sequence[Unknown]) -> list[float] | Non
     if not final.balanced:
         return None
     reaction, moment = (
-        np.column_stack([final.reaction, final.reaction_moment]),
+        in_support_axes(model, np.column_stack([final.reaction, final.reaction_moment])),
         final.diagrams["bending_moment"],
     )
     return [

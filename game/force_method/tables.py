@@ -12,7 +12,7 @@ from pinjoint.components import written
 from pinjoint.components.field import CM, ENDS
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
-from pinjoint.components.particle import supported
+from pinjoint.components.particle import in_support_axes, supported
 from pinjoint.components.rod import bends, nodes
 from pinjoint.force_method import index
 from pinjoint.systems.statics.equations import AXES, Array, Rows, largest
@@ -224,7 +224,7 @@ class Tables:
             unit,
             tr("support"),
             self._supports(places),
-            lambda state: state.reaction[tuple(places.T)],
+            lambda state: in_support_axes(self.model, state.reaction)[tuple(places.T)],
             most,
         )
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:  # a command needs no editor
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
+PAST = 300  # samples of the run before a plot was opened
 PARTS = 24  # of each load step of statics, at which a plot has points
 ENERGIES = {  # by path, as legends name them
     "energy.kinetic": marked("kinetic"),
@@ -113,11 +114,17 @@ class Probes:
     model: weakref.ref[Model] | None = None
 
     def add(self, session: Context, paths: Iterable[str], against: str = TIME) -> Probe:
-        """Sample these quantities from now on; the oldest of more than FEW probes is dropped. Raises PathError."""
+        """Sample these quantities of the run so far, and from now on. Raises PathError.
+
+        The oldest of more than FEW probes is dropped.
+        """
         model = session.model
         probe = Probe(quantity(model, against), tuple(quantity(model, path) for path in paths))
         self.model = weakref.ref(model)
         self.all = [*self.all, probe][-FEW:]
+        for _ in session.document.timeline.revisited(PAST) if model.solution is None else ():
+            session.simulation.observe()
+            probe.sample(session, session.time)
         return probe
 
     def of(self, session: Context) -> list[Probe]:

@@ -9,6 +9,7 @@ import math
 import sys
 import threading
 from collections.abc import Iterable, Iterator, Sequence
+from importlib.resources import files
 from pathlib import Path
 from types import ModuleType
 
@@ -32,11 +33,11 @@ PATIENCE = 30.0  # s that loading one mod may take
 
 
 def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list[Mod]:
-    """Load the mods in these folders (and, if `installed`, the person's own and those of packages).
+    """Load the mods in these folders, or examples by name (and, if `installed`, the person's own and those of packages).
 
     Returns all mods that were found, each with its `problem` if it was left out. Mods that are loaded stay.
     """
-    found = [mod for folder in folders for mod in _in_folder(Path(folder))]
+    found = [mod for folder in folders for mod in _in_folder(folder_of(folder))]
     if installed:
         found += [*_in_folder(mods_folder()), *_in_packages()]
     known: dict[Path | None, Mod] = {
@@ -235,6 +236,12 @@ def mods_folder() -> Path:
     return data_folder() / "mods"
 
 
+def folder_of(name: str | Path) -> Path:
+    """A folder with mods, or that of a bundled example by its name, such as "wind"."""
+    example = Path(str(files("pinjoint.assets") / "mods")) / name
+    return example if not Path(name).is_dir() and (example / MANIFEST).is_file() else Path(name)
+
+
 def _in_folder(folder: Path) -> list[Mod]:
     """The mod that a folder is, or the mods in it, by name of their folders."""
     if (folder / MANIFEST).is_file():
@@ -243,14 +250,14 @@ def _in_folder(folder: Path) -> list[Mod]:
         inside = sorted(entry for entry in folder.iterdir() if entry.is_dir() and entry.name[0] not in "._")
     except OSError:
         return []
-    files = (MANIFEST, "__init__.py")
-    return [read_manifest(made, str(made)) for made in inside if any((made / file).is_file() for file in files)]
+    parts = (MANIFEST, "__init__.py")
+    return [read_manifest(made, str(made)) for made in inside if any((made / part).is_file() for part in parts)]
 
 
 def _in_packages() -> list[Mod]:
     """The mods of installed packages, by name."""
-    files = (file for path in sys.path for file in Path(path).glob("*-info/entry_points.txt"))
-    if not any(GROUP.encode() in file.read_bytes() for file in files):
+    lists = (file for path in sys.path for file in Path(path).glob("*-info/entry_points.txt"))
+    if not any(GROUP.encode() in file.read_bytes() for file in lists):
         return []  # in 1 ms: importlib.metadata takes 50 ms to import
     from importlib.metadata import entry_points
 

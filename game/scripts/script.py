@@ -49,7 +49,8 @@ from pinjoint.components.wording import as_json, cut, remedy
 HEADER = {"format": "pinjoint session", "version": 1}
 _HEADER_KEYS = (*HEADER, "model", "title", "description", "mods", "language", "units")
 EMPTY = {"format": "pinjoint model", "version": 1}
-NEW = EMPTY | {"settings": {"opens_in": STATICS}}  # on which a person draws a structure
+# On which a person draws a structure.
+NEW = EMPTY | {"settings": {"opens_in": STATICS}, "grids": [{"spacing": [0.5, 0.5]}]}
 # Folders of bundled lessons; those to do ask a student for something.
 TO_WATCH, TO_DO = "lessons", "lessons/tasks"
 

@@ -11,6 +11,7 @@ from pinjoint.components.view import View
 from pinjoint.systems.edit.placing import SNAP_REACH
 
 COMFORTABLE = 100.0  # points, length of an arrow of usual size
+LONGEST = 400.0  # points, of the largest arrow before another scale is taken
 USUAL_STRAIN = 1e-3  # of a loaded structure, where no force is known yet
 USUAL_SLOPE = 0.1  # force × extent² / bending stiffness, likewise
 LEVER = 0.25  # of a moment, as a share of the extent
@@ -43,13 +44,22 @@ def extent(model: Model) -> float:
     return float(np.ptp(model.particles.position, axis=0).max(initial=0.0)) or 1.0
 
 
-def arrow_value(view: View, start: Vector, pixel: Vector, size: float) -> Vector:
-    """The vector that an arrow from the point `start` (m) of the picture to a pixel stands for.
+def arrow_scale(model: Model, view: View, field: str) -> float:
+    """How much of a vector one point of its arrow is: a round number, the same while the model is open.
 
-    An arrow of COMFORTABLE length is about `size`, to a scale of 1, 2 or 5 times a power of ten for each
-    point. Whole points count; a component within reach of zero is zero.
+    Only where the largest would be longer than a picture has room for, it is another one.
     """
-    scale = round_down(size / COMFORTABLE)
+    size, kept = usual(model, field), view.arrow_scales.get(field, 0.0)
+    if size > LONGEST * kept:
+        kept = view.arrow_scales[field] = round_down(size / COMFORTABLE)
+    return kept
+
+
+def arrow_value(view: View, start: Vector, pixel: Vector, scale: float) -> Vector:
+    """The vector that an arrow from the point `start` (m) of the picture to a pixel stands for, by its scale.
+
+    Whole points count; a component within reach of zero is zero.
+    """
     origin = view.camera.to_pixels(start)
     across = (pixel[0] - origin[0]) / view.pixel_ratio
     up = (origin[1] - pixel[1]) / view.pixel_ratio
@@ -59,7 +69,7 @@ def arrow_value(view: View, start: Vector, pixel: Vector, size: float) -> Vector
     return x, y
 
 
-def arrow_end(view: View, start: Vector, value: Vector, size: float) -> Vector:
+def arrow_end(view: View, start: Vector, value: Vector, scale: float) -> Vector:
     """The point (m) of the picture where the arrow for a value ends."""
-    metres = view.pixel_ratio / round_down(size / COMFORTABLE) / view.camera.scale
+    metres = view.pixel_ratio / scale / view.camera.scale
     return start[0] + metres * value[0], start[1] + metres * value[1]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Sequence
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,9 @@ _MADE_OF = (
     *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.bending_damping, Rod.damping),
     *(Rod.density, Rod.tensile_strength, Rod.compressive_strength),
 )
+
+
+_PARALLEL = 1e-6  # sine of the angle between lines that do not cross
 
 
 def distance(first: Particle, second: Particle) -> float:
@@ -74,6 +78,30 @@ def join(model: Model, first: Particle, second: Particle, *, rigid: bool = False
     return rod
 
 
+def members_met(model: Model, start: Vector, end: Vector, reach: float) -> list[tuple[float, Rod, float]]:
+    """The members that bend and that a line between two points (m), longer by a reach (m) at both ends, meets inside.
+
+    In order, with how far along the line (m) each is met, and at which share of its own length.
+    """
+    rods, way = model.rods, np.subtract(end, start)
+    length = float(np.hypot(*way))
+    if not rods.count or length == 0.0:
+        return []
+    first, last = drawn_positions(model)[rods.between.T]
+    along, off = last - first, first - start
+    with np.errstate(divide="ignore", invalid="ignore"):  # of those that are parallel
+        across = way[0] * along[:, 1] - way[1] * along[:, 0]
+        at = length * (off[:, 0] * along[:, 1] - off[:, 1] * along[:, 0]) / across
+        share = (off[:, 0] * way[1] - off[:, 1] * way[0]) / across
+        near = np.minimum(share, 1.0 - share) * np.hypot(*along.T)
+        met = (rods.bending_stiffness > 0.0) & (near > reach) & (at > -reach) & (at < length + reach)
+    met &= np.abs(across) > _PARALLEL * length * np.hypot(*along.T)
+    return sorted(
+        ((float(at[row]), rods[row], float(share[row])) for row in np.flatnonzero(met).tolist()),
+        key=itemgetter(0),
+    )
+
+
 def _like_members(model: Model) -> dict[str, Any]:
     """What a new member is made of, by Field."""
     bent = np.flatnonzero(model.rods.bending_stiffness > 0.0)
@@ -88,6 +116,13 @@ def share_at(rod: Rod, point: Vector) -> float:
     start, end = drawn_positions(rod.ends[0].world)[ends]  # type: ignore[arg-type]
     along = end - start
     return float((np.subtract(point, start) * along).sum() / (along**2).sum())
+
+
+def place_at(rod: Rod, share: float) -> Vector:
+    """The point (m) at a share of the length of a rod, as it is drawn."""
+    first, last = drawn_positions(rod.ends[0].world)[[end.row for end in rod.ends]]  # type: ignore[arg-type]
+    x, y = (float(f"{part:.12g}") for part in (first + share * (last - first)).tolist())
+    return x, y
 
 
 def toggle_hinge(model: Model, rod: Rod, end: int) -> str:

@@ -23,7 +23,7 @@ from pinjoint.systems.render.model.cuts import draw_cuts
 from pinjoint.systems.render.model.diagrams import draw_diagrams
 from pinjoint.systems.render.model.free_bodies import draw_free_bodies
 from pinjoint.systems.render.model.members import draw_distributed_forces, draw_hinges, draw_moments
-from pinjoint.systems.render.model.sheet import DIRECTIONS, MANY, Sheet, Shown, Stage, measure
+from pinjoint.systems.render.model.sheet import MANY, Sheet, Shown, Stage, measure
 from pinjoint.systems.render.model.structure import (
     draw_deflected,
     draw_ghost,
@@ -195,17 +195,18 @@ def _composed(sheet: Sheet) -> Picture:
 # --- whose the arrows are ----------------------------------------------------------------------------
 
 
-def symbol_at(model: Model, view: View, pixel: Vector) -> Particle | Rod | None:
+def symbol_at(model: Model, view: View, pixel: Vector, *, loads: bool = False) -> Particle | Rod | None:
     """The particle or rod whose arrow or support lies under a pixel, of a load the particle that bears it.
 
-    None in large models, and while something is drawn, when a click means a place.
+    None in large models, and while something is drawn, when a click means a place. loads: only arrows of loads count.
     """
     elsewhere = view.covers(pixel) or not view.camera.viewport.contains(pixel)
     if elsewhere or view.tool or view.preview is not None or model.particles.count > MANY:
         return None
     sheet = measure(model, view, load_theme(view.theme))
     best, found = np.inf, None
-    for start, end, reach, of in (lines for mark in _symbols(sheet) for lines in _lines_of(mark, sheet.unit)):
+    marks = [mark for mark in _symbols(sheet) if not loads or getattr(mark, "colour", None) == sheet.theme.load]
+    for start, end, reach, of in (lines for mark in marks for lines in _lines_of(mark, sheet.unit)):
         away = distance_to_segments(np.array(pixel), start, end)
         if len(away) and (nearest := int(np.argmin(away))) >= 0 and away[nearest] <= min(reach, best):
             best, found = float(away[nearest]), (of[0], int(of[1][nearest]))
@@ -236,4 +237,5 @@ def _lines_of(mark: Mark, unit: float) -> Iterator[_Lines]:
             for k in range(corners.shape[1]):
                 yield corners[:, k - 1], corners[:, k], REACH * unit, of
         case Stamps(_, at, size, turns=turns, of=(str(), _) as of):
-            yield at, at + size * DIRECTIONS[turns], size / 2, of
+            quarter = 0.5 * np.pi * turns
+            yield at, at + size * np.array([np.cos(quarter), np.sin(quarter)]), size / 2, of

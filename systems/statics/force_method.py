@@ -26,7 +26,7 @@ from pinjoint.components.derived import along_and_across
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
-from pinjoint.components.particle import spring_stiffness, supported
+from pinjoint.components.particle import in_support_axes, spring_stiffness, supported
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import Array, Rows, Structure, largest, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
@@ -204,7 +204,7 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
             stretched[index] = own[index] * real.axial_force[unknown.place] + free[index]
         elif spring := unknown.spring(model):
             own[index] = -1.0 / spring
-            stretched[index] = own[index] * real.reaction[unknown.place]
+            stretched[index] = own[index] * in_support_axes(model, real.reaction)[unknown.place]
         elif unknown.of_support:
             prescribed[index] = _places(model)[unknown.place]
     gap = work.gap
@@ -278,8 +278,10 @@ class _Released:
         if self._whole.bending is not None:
             couple += self._whole.bending.carried_over(couple, self._hinges)
         state = self._state(force[:, : self._whole.width], 0.0, couple)
-        if not unknown.of_end:
-            (state.axial_force if unknown.of_bar else state.reaction)[unknown.place] = 1.0
+        if unknown.of_bar:
+            state.axial_force[unknown.place] = 1.0
+        elif unknown.of_support:
+            state.reaction[...] += force
         return state
 
     def _state(self, load: Array, share: float, moment: Array) -> SetState:
@@ -319,12 +321,14 @@ def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequ
     straight = (m * _product(linear, base.bending_moment)).sum(axis=2)
     springs = spring_stiffness(model)
     soft = np.divide(1.0, springs, out=np.zeros_like(springs), where=springs > 0.0)
-    moved = np.where(supported(model) & (springs == 0.0), _places(model), -soft * base.reaction)
+    moved = -soft * in_support_axes(model, base.reaction)
+    moved = np.where(supported(model) & (springs == 0.0), _places(model), moved)
     for unknown in unknowns:
         if unknown.of_support:
             moved[unknown.place] = 0.0
     settled = np.argwhere((moved != 0.0) | (springs > 0.0))
-    reactions = np.array([unit.reaction for unit in units]).reshape(count, len(moved), 3)[:, *settled.T]
+    reactions = np.array([in_support_axes(model, unit.reaction) for unit in units])
+    reactions = reactions.reshape(count, len(moved), 3)[:, *settled.T]
     at = tuple(settled.T)
     return Work(
         Terms(
@@ -361,5 +365,5 @@ def _free(model: Model) -> Array:
 
 
 def _places(model: Model) -> Array:
-    """Displacements and rotations of all particles, (n, 3)."""
-    return np.column_stack([model.particles.displacement, model.particles.rotation])
+    """Displacements and rotations of all particles along the axes of their supports, (n, 3)."""
+    return in_support_axes(model, np.column_stack([model.particles.displacement, model.particles.rotation]))

@@ -286,6 +286,7 @@ def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Arra
         )
         return theory.deflection(structure.held(structure.bending.moments(kinks)))
     unit[row, axis] = 1.0
+    unit = structure.along_axes(unit)
     if quantity in ("displacement", "rotation"):
         return theory.deflection(unit)
     if spring := float(structure.springs[row, axis]):

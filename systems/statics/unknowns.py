@@ -12,7 +12,7 @@ from pinjoint.components.field import ENDS
 from pinjoint.components.language import marked
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle, spring_stiffness, supported
+from pinjoint.components.particle import Particle, in_support_axes, spring_stiffness, supported
 from pinjoint.components.rod import Rod, bends, rigid_joints
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.wording import missing
@@ -162,6 +162,7 @@ class Unknown:
             force[model.rods.between[row], :2] = axis, -axis
         elif self.of_support:
             force[self.place] = 1.0
+            force = in_support_axes(model, force, back=True)
         else:
             couple[self.place] = (-1.0, 1.0)[self.axis or 0]
         return force, couple

@@ -11,6 +11,7 @@ from pinjoint import Session, mods
 from pinjoint.commands.command_line import main
 from pinjoint.components import Particle
 from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.mods.loading import folder_of
 from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.physics.integrators import VelocityVerlet
 from pinjoint.systems.program.compiler import Choice
@@ -371,6 +372,18 @@ def test_mods_are_listed_checked_and_left_out(
     assert "pear 1.0: loaded" in out
     assert main(["mods", "new", "my mod"]) == 2
     assert main(["mods", "check", str(tmp_path)]) == 2
+
+
+def test_bundled_examples_are_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert folder_of("wind").name == "wind"
+    assert (folder_of("wind") / "mod.toml").is_file()
+    (tmp_path / "wind").mkdir()
+    assert folder_of("wind") == Path("wind"), "a folder of one's own goes first"
+    assert main(["run", "pendulum", "--mods", "wnid"]) == 2
+    assert "--mods wnid: there is no such folder" in capsys.readouterr().err
 
 
 def test_a_persons_own_mods_are_loaded_unless_they_are_left_out(

@@ -13,6 +13,7 @@ from pinjoint.components.camera import Rectangle
 from pinjoint.components.view import Plot
 from pinjoint.included.probes import ENERGIES, probes_of, record
 from pinjoint.paths import quantity
+from pinjoint.systems.edit.pull import Hand
 from pinjoint.systems.render.marks import Strokes, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
@@ -76,6 +77,39 @@ def test_o_plots_one_quantity_of_the_selected_element_after_the_other() -> None:
     assert probes_of(session).all[0].key == ("time", *ENERGIES)
 
 
+@pytest.mark.parametrize(
+    ("name", "pulled"), [("pendulum", False), ("hyperstatic_yield", False), ("hyperstatic_yield", True)]
+)
+def test_a_plot_that_is_opened_after_a_run_shows_it_and_changes_nothing(name: str, pulled: bool) -> None:
+    """The bits of one that was open all the time, at the same times, and those of the run that goes on."""
+    early, late = Session.open(name), Session.open(name)
+    rod = early.rods.names[-1]
+    early.select(early.rods[rod])
+    early.press("o")
+    for session in (early, late):
+        session.step(150)
+        if pulled:
+            timeline = session.document.timeline
+            timeline.hold(Hand(session.particles["C"], 1e4, 1.0, (0.01, 0.02)))
+            session.step(40)
+            timeline.hold(Hand(session.particles["C"], 1e4, 1.0, (-0.01, 0.0)))
+            session.step(40)
+            timeline.hold(None)
+        session.step(150)
+    late.select(late.rods[rod])
+    before = late.time, late.particles.velocity.tobytes(), late.simulation.events, late.document.timeline.kept
+    late.press("o")
+    after = late.time, late.particles.velocity.tobytes(), late.simulation.events, late.document.timeline.kept
+    assert after == before
+    [probe] = probes_of(late).all
+    assert len(probe.table) > 250
+    for session in (early, late):
+        session.step(50)
+    assert early.particles.displacement.tobytes() == late.particles.displacement.tobytes()
+    found = {row[0]: row[2] for row in probes_of(early).all[0].table.tolist()}
+    assert all(found.get(time, value) == value for time, _, value in probe.table.tolist())
+
+
 def test_what_time_took_back_is_dropped() -> None:
     session = Session.open("pendulum")
     session.step()
@@ -83,12 +117,12 @@ def test_what_time_took_back_is_dropped() -> None:
     for _ in range(5):
         session.step()
         session.frame(0.0)
-    assert len(probe.table) == 5
+    assert len(probe.table) == 6, "the beginning, too"
     session.step(-3)
     session.frame(0.0)
     assert probe.table[:, 0].tolist() == sorted(set(probe.table[:, 0].tolist()))
     assert probe.table[-1, 0] == session.time
-    assert len(probe.table) == 2
+    assert len(probe.table) == 3
 
 
 def test_plots_zoom_to_the_last_part_of_the_time() -> None:

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from pinjoint.commands import force_method as command
 from pinjoint.commands.command_line import main
 from pinjoint.components.model import Model
+from pinjoint.components.particle import in_support_axes
 from pinjoint.documents import models
 from pinjoint.documents.models import parse
 from pinjoint.systems.statics.force_method import SetState, Solution, solve
@@ -58,7 +59,8 @@ def checked(made: Model, unknowns: list[Unknown], within: float = 1e-9) -> Solut
 def moved(made: Model, unknown: Unknown, state: SetState) -> float:
     """How far a support is displaced, or the ends of a bar are farther apart, in a set."""
     if unknown.of_support:
-        return float(np.column_stack([state.displacement, state.rotation])[unknown.place])
+        place = in_support_axes(made, np.column_stack([state.displacement, state.rotation]))
+        return float(place[unknown.place])
     row = unknown.element.row
     first, second = state.displacement[made.rods.between[row]]
     return float((second - first) @ made.rods.difference[row] / made.rods.original_length[row])

@@ -66,6 +66,7 @@ def random_frame(seed: int, *, moves: bool = True) -> dict[str, Any]:
         free = [not held for held in (*facts.get("fixed", (False, False)), facts.get("fixed_rotation", False))]
         x, y, turning = (10.0 ** lot.uniform(2.0, 4.0, 3) * (lot.random(3) < 0.15) * free).tolist()
         facts |= {"support_springs": [x, y], "rotation_spring": turning}
+        facts["support_angle"] = float(lot.uniform(-1.0, 1.0) * (lot.random() < 0.3))
     return model(particles, rods)
 
 

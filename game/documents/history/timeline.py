@@ -13,6 +13,7 @@ Moment = tuple[int, float | None]  # see Simulation.moment
 MEMORY = 256 * 2**20  # bytes that checkpoints may take; less: going back takes longer
 _MOST_CHECKPOINTS = 512
 _FIRST_INTERVAL = 128  # steps between checkpoints; doubled whenever there are too many
+_LONG = 2_000_000  # steps × particles of a run that is not gone through again
 _RUN_UP = 64  # steps before the one gone back to, where a checkpoint is kept for going back further
 
 
@@ -122,12 +123,7 @@ class Timeline:
             return False
         start = max(at for at in self._checkpoints if at <= steps)
         self._resume(start)
-        for at, moment, hand in self._hands:
-            if start < at <= steps:
-                self._simulation.go_to(*moment)
-                self._simulation.stay()
-            if start < at < steps:
-                self._change_hand(hand)
+        self._follow_hand(start + 1, steps)
         if self._now < steps - _RUN_UP:
             self._run_to(steps - _RUN_UP)
             self._keep()
@@ -136,6 +132,38 @@ class Timeline:
             self._change_hand(None)
         self._went_back = True
         return self._now == steps
+
+    def revisited(self, most: int) -> Iterator[None]:
+        """Let the model go through the run again, up to so many steps of it; afterwards it is as it was.
+
+        For those who begin to look after a run, such as plots. None where a hand pulls, or the run was long.
+        """
+        first, now = self.first, self._now
+        if first == now or (now - first) * self._simulation.model.particles.count > _LONG or self._pull.hand:
+            return
+        present, kept, went_back = self._simulation.checkpoint(), self._checkpoints, self._went_back
+        before = first
+        try:
+            self._resume(first)
+            for steps in sorted({first + (now - first) * part // most for part in range(most)}):
+                self._follow_hand(before + (before == first), steps)
+                self._run_to(steps)
+                yield
+                before = steps
+        finally:
+            if self._pull.hand is not None:
+                self._change_hand(None)
+            self._simulation.resume(present)
+            self._checkpoints, self._went_back = kept, went_back
+
+    def _follow_hand(self, since: int, steps: int) -> None:
+        """Do again what the hand did from a step on until another one is begun."""
+        for at, moment, hand in self._hands:
+            if since <= at <= steps:
+                self._simulation.go_to(*moment)
+                self._simulation.stay()
+            if since <= at < steps:
+                self._change_hand(hand)
 
     def _resume(self, at: int) -> None:
         hand = next((hand for when, _, hand in reversed(self._hands) if when <= at), None)

@@ -89,6 +89,18 @@ def _rigid(context: Context, pixel: Vector) -> None:
         context.notice = tr("{rods}: rigid at both ends, {section}", rods=named, section=section)
 
 
+@action("joining", "ctrl+t", "join rods to members that they meet, or cross these", while_drawing=True)
+def _joining(context: Context, pixel: Vector) -> None:
+    context.view.joins = not context.view.joins
+    if isinstance(context.gesture, DrawRod):
+        context.gesture.say(context)
+    context.notice = (
+        tr("New rods will be joined to members that they meet.")
+        if context.view.joins
+        else tr("New rods will cross members that they meet.")
+    )
+
+
 @action(
     "hinge",
     "ctrl+j",

@@ -9,12 +9,14 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, listed, marked, plural, tr
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
 from pinjoint.components.settings import HUBS, PAUSE, STATICS
 from pinjoint.components.tags import Selected
 from pinjoint.editor.clipboard import Part
 from pinjoint.editor.context import Context, tell
 from pinjoint.editor.gestures.drawing import Drawing, DrawSupport, tool_in_hand
-from pinjoint.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
+from pinjoint.editor.gestures.moving import BoxSelect, Move, MoveArrow, MovePoint, PullParticle
 from pinjoint.editor.readouts import pin_at, pinned, retype
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.editor.toolbar import menu_at
@@ -119,10 +121,24 @@ def _drag(context: Context, pixel: Vector) -> None:
         context.gesture = PullParticle(context, particle)
     elif context.scene in HUBS and particle is None and (grip := pick_point(model, view, pixel)) is not None:
         context.gesture = MovePoint(context, grip)
+    elif context.scene in HUBS and particle is None and (element := _arrow_at(context, pixel)) is not None:
+        context.gesture = MoveArrow(context, element, pixel)
     elif context.scene in HUBS and (hit := particle or pick_line(model, view, pixel)) is not None:
         context.gesture = Move(context, hit, pixel)
     else:
         context.gesture = BoxSelect(context, pixel, adding=False)
+
+
+def _arrow_at(context: Context, pixel: Vector) -> Particle | Rod | None:
+    """The particle or rod whose own load has an arrow at a pixel, off all rods."""
+    if pick_line(context.model, context.view, pixel) is not None:
+        return None
+    element = symbol_at(context.model, context.view, pixel, loads=True)
+    if element is None:
+        return None
+    return (
+        element if any(element.force if isinstance(element, Particle) else element.distributed_force) else None
+    )
 
 
 action("drag to add", "ctrl+drag", "add all in a box to the selection")(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,19 +15,21 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, rigid_joints
+from pinjoint.components.rod import Rod, bends, rigid_joints
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import BETWEEN, COVERED, Preview, drawn_positions
 from pinjoint.editor.context import Context, Gesture, tell
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.edit.arrows import arrow_end, arrow_value, usual
+from pinjoint.systems.edit.arrows import arrow_end, arrow_scale, arrow_value
+from pinjoint.systems.edit.dividing import divide_at
 from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_particle, pick_rod
-from pinjoint.systems.edit.placing import particle_at, place, snapped, snapped_to_points
-from pinjoint.systems.edit.rods import check_ends, distance, join
+from pinjoint.systems.edit.placing import SAME, particle_at, place, snapped, snapped_to_points
+from pinjoint.systems.edit.rods import check_ends, distance, join, members_met, place_at, share_at
 from pinjoint.systems.edit.supports import SUPPORTS, Held, next_support, support, support_towards
 from pinjoint.systems.edit.typed import UP, number, tidy, vector
 from pinjoint.systems.forms.properties import heading
 
+STEP = 10.0  # points, by which arrows are dragged
 CLAMPED_BEYOND = 60.0  # points from a particle to its ground, which then holds its rotation, too
 SMALLEST_RIM = 5.0  # points, of a particle as it is drawn
 
@@ -138,36 +141,60 @@ class DrawRod(Drawing):
     @staticmethod
     def kind(context: Context) -> str:
         """What rods are drawn with now, and how to change that, for the status line."""
-        return tr("rigid ends (Ctrl+R: pinned)") if context.view.rigid else tr("pinned (Ctrl+R: rigid ends)")
+        ends = tr("rigid ends (Ctrl+R: pinned)") if context.view.rigid else tr("pinned (Ctrl+R: rigid ends)")
+        if not bends(context.model):
+            return ends
+        meets = (
+            tr("joins members (Ctrl+T: crosses)")
+            if context.view.joins
+            else tr("crosses members (Ctrl+T: joins)")
+        )
+        return joined([ends, meets], BETWEEN)
 
     @classmethod
     def begin_anywhere(cls, context: Context, pixel: Vector) -> Drawing:
         """A new drawing by a click or drag with the tool in hand."""
-        point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
-        return cls.begin(context, pixel) or cls(context, point)
+        return cls.begin(context, pixel) or cls(context, onto_member(context, pixel))
 
     def drop(self, context: Context, pixel: Vector) -> None:
         model, view, begin = context.model, context.view, self.origin
         end = self._ending(context, pixel)
-        before = model.particles.count
+        before, met = model.particles.count, self._met(context, end)
         with model.transaction(marked("new rod")):
-            first = begin if isinstance(begin, Particle) else place(model, view, begin)
-            if not isinstance(end, Particle):
-                end = model.create(Particle, position=[end])[0] if self.typed else place(model, view, end)
-            self._end = end
-            rod = join(model, first, self._end, rigid=view.rigid)
+            stops = [divide_at(model, rod, [share])[1].ends[0] for _, rod, share in met]
+            if not met or met[0][0] > SAME:
+                stops.insert(0, begin if isinstance(begin, Particle) else place(model, view, begin))
+            if isinstance(end, Particle):
+                stops.append(end)
+            elif not met or met[-1][0] < math.dist(self.start(context), end) - SAME:
+                stops.append(
+                    model.create(Particle, position=[end])[0] if self.typed else place(model, view, end)
+                )
+            rods = [join(model, *pair, rigid=view.rigid) for pair in itertools.pairwise(stops)]
+            self._end, rod = stops[-1], rods[-1]
         made = model.particles.count - before
         with_new = plural("with one new particle", "with {count} new particles", made) if made else ""
         made_of = (rod.section or tr("rigid")) if view.rigid else ""
-        said = [written.length(rod.rest_length, written.DIGITS), made_of, with_new]
+        joins = plural("joined to a member", "joined to {count} members", len(met)) if met else ""
+        said = [written.length(sum(rod.rest_length for rod in rods), written.DIGITS), made_of, with_new, joins]
         tell(context, joined(said, ", "), rod)
+
+    def _met(self, context: Context, end: Particle | Vector) -> list[tuple[float, Rod, float]]:
+        """The members that it is joined to on its way: how far along it, and at which share of each."""
+        if not context.view.joins:
+            return []
+        start = self.start(context)
+        last = _drawn_at(context, end) if isinstance(end, Particle) else end
+        farthest = math.dist(start, last) + SAME * (-1.0 if isinstance(end, Particle) else 1.0)
+        nearest = SAME * (1.0 if isinstance(self.origin, Particle) else -1.0)
+        return [met for met in members_met(context.model, start, last, SAME) if nearest < met[0] < farthest]
 
     def _ending(self, context: Context, pixel: Vector) -> Particle | Vector:
         """The particle or the point where it ends, as typed, else as pointed at: nearly level or upright rods are so."""
         model, view = context.model, context.view
         if not self.typed and (particle := pick_particle(model, view, pixel)) is not None:
             return particle
-        pointed = snapped(model, view, view.camera.to_model(pixel), self.start(context))
+        pointed = onto_member(context, pixel, self.start(context))
         point = self.end_typed(context, pointed)
         return particle_at(model, point) or point if self.typed else point
 
@@ -194,13 +221,18 @@ class DrawRod(Drawing):
         start, other = self.start(context), self._ending(context, pixel)
         if not isinstance(other, Particle) or other is self.origin or not isinstance(self.origin, Particle):
             end = _drawn_at(context, other) if isinstance(other, Particle) else other
-            return Preview("rod", start, end, _length_and_angle(start, end))
+            return Preview(
+                "rod", start, end, _length_and_angle(start, end), joints=self._joints(context, other)
+            )
         try:
             check_ends(context.model, self.origin, other)
             label = written.length(distance(self.origin, other), written.DIGITS)
         except Refusal:
             label = tr("joined already")
-        return Preview("rod", start, _drawn_at(context, other), label)
+        return Preview("rod", start, _drawn_at(context, other), label, joints=self._joints(context, other))
+
+    def _joints(self, context: Context, end: Particle | Vector) -> tuple[Vector, ...]:
+        return tuple(place_at(rod, share) for _, rod, share in self._met(context, end))
 
 
 class DrawArrow(Drawing):
@@ -219,7 +251,11 @@ class DrawArrow(Drawing):
         alone = len(self.elements) == 1
         named = self.elements[0].said if alone else heading(context.model, self.elements)
         typed = tr("or type its value: −15, 3; −15 or 15@−60")
-        self.hint = joined([tr(self.asks, particle=named, rods=named), tr("Esc cancel"), typed], BETWEEN)
+        asks = tr(self.asks, particle=named, rods=named)
+        self.hint = joined([asks, tr("Esc cancel"), typed, scale_said(context, self._field)], BETWEEN)
+
+    def _scale(self, context: Context) -> float:
+        return arrow_scale(context.model, context.view, self.field)
 
     @property
     def _field(self) -> Field[Any]:
@@ -232,7 +268,7 @@ class DrawArrow(Drawing):
 
     def value(self, context: Context, pixel: Vector) -> Any:
         """What is typed, of which a number alone points up, or what the arrow to a pixel stands for."""
-        drawn = arrow_value(context.view, self.start(context), pixel, usual(context.model, self.field))
+        drawn = arrow_value(context.view, self.start(context), pixel, self._scale(context))
         return vector(self.typed, *self.unit, drawn, UP) if self.typed else drawn
 
     def shown(self, value: Any) -> str:
@@ -249,7 +285,7 @@ class DrawArrow(Drawing):
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         value, start = self.value(context, pixel), self.start(context)
-        end = arrow_end(context.view, start, value, usual(context.model, self.field))
+        end = arrow_end(context.view, start, value, self._scale(context))
         return Preview(self.field.replace("_", " "), start, end, self.shown(value))
 
 
@@ -318,8 +354,7 @@ class DrawMoment(DrawArrow):
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         value, start = self.value(context, pixel), self.start(context)
-        size = usual(context.model, self.field)
-        x, _ = arrow_end(context.view, start, (-value, 0.0), size) if value else start
+        x, _ = arrow_end(context.view, start, (-value, 0.0), self._scale(context)) if value else start
         return Preview("moment", start, (x, start[1]), self.shown(value))
 
 
@@ -415,6 +450,21 @@ class TypePoint(Drawing):
 def _length_and_angle(start: Vector, end: Vector) -> str:
     angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0])) + 0.0
     return f"{written.length(math.dist(start, end), written.DIGITS)}, {written.given(angle, 4)}°"
+
+
+def scale_said(context: Context, field: Field[Any]) -> str:
+    """The scale of the arrows of a Field, for the status line."""
+    unit, factor = field.shown
+    points = STEP * arrow_scale(context.model, context.view, field.name)
+    return tr("{points:g} px = {value}", points=STEP, value=written.stated(factor * points, unit))
+
+
+def onto_member(context: Context, pixel: Vector, start: Vector = (math.inf, math.inf)) -> Vector:
+    """The point (m) under a pixel: on the grid or level with a start if near it, and on the member there if rods join it."""
+    model, view = context.model, context.view
+    point = snapped(model, view, view.camera.to_model(pixel), start)
+    rod = pick_rod(model, view, pixel) if view.joins and not view.covers(pixel) else None
+    return point if rod is None or not rod.bending_stiffness else place_at(rod, share_at(rod, point))
 
 
 def _drawn_at(context: Context, particle: Particle) -> Vector:

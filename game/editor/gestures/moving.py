@@ -10,12 +10,15 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import begun, marked, tr
+from pinjoint.components.language import begun, joined, marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.particle import Particle
-from pinjoint.components.view import Preview, drawn_positions
+from pinjoint.components.rod import Rod
+from pinjoint.components.view import BETWEEN, Preview, drawn_positions
 from pinjoint.editor.context import Context, Gesture
+from pinjoint.editor.gestures.drawing import STEP, scale_said
 from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.arrows import arrow_scale
 from pinjoint.systems.edit.picking import Grip, inside
 from pinjoint.systems.edit.placing import Movable, check_free, snapped, snapped_to_points
 from pinjoint.systems.edit.pull import Hand
@@ -101,6 +104,34 @@ class MovePoint(Placing):
             element=begun(heading(context.model, [element])),
             point=named,
             place=written.place(target, written.DIGITS),
+        )
+
+
+class MoveArrow(Placing):
+    """Drags the arrow of a load on a particle or a rod: its force changes, by the scale of arrows that are drawn."""
+
+    def __init__(self, context: Context, element: Particle | Rod, pixel: Vector) -> None:
+        self._element, self._from = element, pixel
+        self._field = Particle.force if isinstance(element, Particle) else Rod.distributed_force
+        self._force = getattr(element, self._field.name)
+        self.hint = joined([tr(Placing.hint), scale_said(context, self._field)], BETWEEN)
+        rows = [element.row] if isinstance(element, Particle) else [end.row for end in element.ends]
+        middle = context.view.camera.to_pixels(drawn_positions(context.model)[rows].mean(axis=0))
+        out = np.subtract(pixel, middle) * [1.0, -1.0]
+        self._way = (
+            -1.0 if float(out @ self._force) < 0.0 else 1.0
+        )  # it ends at the element, and is held at its tail
+
+    def place(self, context: Context, pixel: Vector) -> str:
+        scale = arrow_scale(context.model, context.view, self._field.name)
+        points = np.subtract(pixel, self._from) * [1.0, -1.0] / context.view.pixel_ratio
+        added = self._way * STEP * scale * np.round(points / STEP)
+        value = tuple(float(f"{part:.12g}") for part in np.add(self._force, added).tolist())
+        context.model.assign([self._element], self._field.name, [value])
+        return tr(
+            "{element}: {value}",
+            element=begun(self._element.said),
+            value=written.stated(value, self._field.unit),
         )
 
 

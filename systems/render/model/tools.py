@@ -43,6 +43,8 @@ def draw_preview(sheet: Sheet) -> list[Mark]:
     drawn = _KINDS[preview.kind](sheet, start, end)
     for ends in preview.along:
         drawn += _along(sheet, sheet.view.camera.to_pixels(ends), end - start)
+    for joint in preview.joints:
+        drawn += _hinge(sheet, sheet.view.camera.to_pixels(joint), end)
     if preview.typed:
         end = np.array(sheet.view.pixel)
     return [*drawn, *(_label(sheet, preview, end) if preview.label or preview.typed else [])]

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from pinjoint import Session
+from pinjoint.components import written
 from pinjoint.components.view import Preview
 from tests.systems.edit.hand import FRAME, press_at, preview
 
@@ -178,3 +179,60 @@ def test_attaching_and_deleting_a_rod_recomputes_masses_as_one_entry(two: Sessio
     two.press("ctrl+z")
     assert two.rods.count == 0
     assert two.particles["particle 1"].mass == 50.0
+
+
+# --- arrows ------------------------------------------------------------------------------------------
+
+
+def arrow(session: Session, points: float, name: str) -> tuple[float, float]:
+    """The force of an arrow so many points up from a particle."""
+    x, y = session.view.camera.to_pixels(session.particles[name].position).tolist()
+    session.press("f", (x, y))
+    session.press("f", (x, y - points))
+    force: tuple[float, float] = session.particles[name].force
+    return force
+
+
+def test_all_arrows_of_a_model_are_drawn_to_one_scale_that_is_told(two: Session) -> None:
+    press_at(two, "l", 0.0, 0.0)
+    press_at(two, "l", 1.5, 0.0)
+    first = arrow(two, 75.0, "particle 1")
+    two.view.camera.zoom(2.0, two.view.camera.middle)
+    two.press("f", two.point(*two.particles["particle 2"].position))
+    two.update_view()
+    said = f"10 px = {written.given(10.0 * first[1] / 75.0)} kN"
+    assert said in two.view.status.hint
+    two.press("escape")
+    assert arrow(two, 75.0, "particle 2") == first
+
+
+def test_the_arrow_of_a_load_is_dragged_in_steps_by_its_scale(two: Session) -> None:
+    press_at(two, "l", 0.0, 0.0)
+    press_at(two, "l", 1.5, 0.0)
+    _, up = arrow(two, 75.0, "particle 1")
+    two.update_view()
+    x, y = two.view.camera.to_pixels(two.particles["particle 1"].position).tolist()
+    tail = x, y + 40.0  # it points to its particle, from below
+    two.press("drag", tail)
+    two.press("drag to", (tail[0] + 2.0, tail[1] + 18.0))
+    assert two.particles["particle 1"].force == (0.0, pytest.approx(up * 95.0 / 75.0))
+    two.press("drag to", (tail[0], tail[1] + 31.0))
+    two.press("drop", (tail[0], tail[1] + 31.0))
+    assert two.particles["particle 1"].force == (0.0, pytest.approx(up * 105.0 / 75.0))
+    two.undo()
+    assert two.particles["particle 1"].force == (0.0, up)
+
+
+def test_escape_gives_a_dragged_load_back(two: Session) -> None:
+    press_at(two, "l", 0.0, 0.0)
+    press_at(two, "l", 1.5, 0.0)
+    down = -arrow(two, 75.0, "particle 1")[1]
+    two.particles["particle 1"].force = (0.0, down)
+    two.update_view()
+    x, y = two.view.camera.to_pixels(two.particles["particle 1"].position).tolist()
+    tail = x, y - 40.0
+    two.press("drag", tail)
+    two.press("drag to", (tail[0], tail[1] - 20.0))
+    assert two.particles["particle 1"].force == (0.0, pytest.approx(down * 95.0 / 75.0))
+    two.press("escape")
+    assert two.particles["particle 1"].force == (0.0, down)
