@@ -10,6 +10,7 @@ from pinjoint.components.field import LARGEST, SMALLEST, Column, Field, Role
 from pinjoint.components.language import begun, decimals, joined, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import obstacles
+from pinjoint.components.particle import turned_supports
 from pinjoint.components.wording import cut
 
 UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
@@ -31,6 +32,18 @@ def incomputable(model: Model) -> str:
     problem = _out_of_range(model) or _too_far(model)
     model.sound = model.sound if problem else model.revision
     return problem
+
+
+def immovable(model: Model) -> str:
+    """The sentence that names a support that motion in time does not know; "" if there is none."""
+    for row in np.flatnonzero(turned_supports(model))[:1].tolist():
+        return tr(
+            "{particle}: its support is turned by {angle:.4g}°, which statics knows, and motion does not yet. Find the"
+            " equilibrium by statics, or set its support angle to 0.",
+            particle=begun(model.describe(model.particles[row])),
+            angle=float(np.degrees(model.particles.support_angle[row])),
+        )
+    return ""
 
 
 def _out_of_range(model: Model) -> str:

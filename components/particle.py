@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from typing import Any
 
@@ -50,6 +51,11 @@ class Particle(Handle):
         dtype=bool,
         title="rotation constrained",
         doc="Clamped: the rods rigidly joined to it cannot turn there.",
+    )
+    support_angle: Field[float] = Field(
+        "rad",
+        doc="By how much the two axes are turned along which its support holds it, counter-clockwise; in statics.",
+        shown=("°", 180.0 / math.pi),
     )
     support_springs: Field[Vector] = Field(
         "kN/m",
@@ -180,6 +186,35 @@ def supported(world: Store) -> NDArray[np.bool_]:
     rigid = np.column_stack([particles.fixed, particles.fixed_rotation])
     found: NDArray[np.bool_] = rigid | (spring_stiffness(world) > 0.0)
     return found
+
+
+def turned_supports(world: Store) -> NDArray[np.bool_]:
+    """Which particles have supports that do not act along x and y, shape (particles,)."""
+    particles = world.tables["particles"]
+    found: NDArray[np.bool_] = (particles.support_angle != 0.0) & supported(world)[:, :2].any(axis=1)
+    return found
+
+
+def in_support_axes(world: Store, field: NDArray[np.float64], *, back: bool = False) -> NDArray[np.float64]:
+    """Vectors (particles, 2 or 3) along the axes of supports, those without any along x and y; back: from there."""
+    angle = np.where(turned_supports(world), world.tables["particles"].support_angle, 0.0)
+    return turned(field, -angle if back else angle)
+
+
+def turned(field: NDArray[np.float64], angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Vectors (n, 2 or 3) along axes that are turned by angles (n,); what turns, their third part, is the same there."""
+    if not angle.any():
+        return field
+    found, cosine, sine = field.copy(), np.cos(angle), np.sin(angle)
+    found[:, 0] = cosine * field[:, 0] + sine * field[:, 1]
+    found[:, 1] = cosine * field[:, 1] - sine * field[:, 0]
+    return found
+
+
+def of_rigid_supports(world: Store, field: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Vectors (particles, 2) as far as they lie in directions that rigid supports hold."""
+    held = np.where(world.tables["particles"].fixed, in_support_axes(world, field), 0.0)
+    return in_support_axes(world, held, back=True)
 
 
 def is_sprung(world: Store) -> bool:

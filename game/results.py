@@ -12,7 +12,7 @@ from pinjoint.components.derived import chord_rotation, rigid_slopes
 from pinjoint.components.field import CM, ENDS, MOVED
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle, supported
+from pinjoint.components.particle import Particle, in_support_axes, supported, turned_supports
 from pinjoint.components.rod import Rod, bends, bends_unchecked, has_strength, nodes, rigid_joints, utilisation
 from pinjoint.components.wording import as_said
 from pinjoint.components.written import ROUNDING
@@ -78,12 +78,17 @@ def _of_rods(model: Model, length: Array, force: float, moment: float) -> Table:
 def _of_particles(model: Model, force: float, moment: float) -> Table:
     """Displacements and reactions; where rods bend, rotations and moments of clamps, too."""
     particles, turns, held = model.particles, rigid_joints(model), supported(model)
-    moved, reaction = particles.displacement, np.where(held[:, :2], particles.reaction, np.nan)
+    slanted = turned_supports(model)
+    either = held[:, :2] | slanted[:, None]
+    moved, reaction = particles.displacement, np.where(either, particles.reaction, np.nan)
     columns = _parts("displacement", tr("displacement"), "xy", MOVED, moved, _largest(moved))
     if turns.any():
         rotation = np.where(turns, particles.rotation, np.nan)
         columns.append(_column("rotation", tr("rotation"), _MRAD, rotation))
     columns += _parts("reaction", tr("reaction"), "xy", _KN, reaction, force)
+    if slanted.any():
+        along = np.where(held[:, :2] & slanted[:, None], in_support_axes(model, particles.reaction), np.nan)
+        columns += _parts("turned_reaction", tr("along its axes"), "xy", _KN, along, force)
     if turns.any():
         clamped = np.where(turns & held[:, 2], particles.reaction_moment, np.nan)
         columns.append(_column("reaction_moment", tr("moment"), _KNM, clamped, moment))

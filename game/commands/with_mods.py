@@ -6,7 +6,6 @@ import logging
 import uuid
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 
 from pinjoint.commands.arguments import Parser
 from pinjoint.components.extensions import EXTENSIONS

@@ -41,7 +41,8 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
         *(Rod.tensile_strength, Rod.compressive_strength, Rod.tension_only),
     ),
     marked("Supports and joints"): (
-        *(Particle.fixed, Particle.fixed_rotation, Particle.support_springs, Particle.rotation_spring),
+        *(Particle.fixed, Particle.fixed_rotation, Particle.support_angle, Particle.support_springs),
+        Particle.rotation_spring,
         *(Rod.hinged, Rod.end_springs),
     ),
     marked("Loads"): (

@@ -17,7 +17,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import marked, tr, tr_in
 from pinjoint.components.load import CONSTANT, Load, factor_now
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle, supported
+from pinjoint.components.particle import Particle, in_support_axes, supported, turned_supports
 from pinjoint.components.rod import Rod, bends_unchecked, rigid_joints, utilisation
 from pinjoint.components.view import Readout
 
@@ -189,7 +189,11 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading
             yield _result(tr("rotation"), _number(angle[row], angle, _MRAD[0]), Particle.rotation)
         *held, clamped = supported(columns.model)[row].tolist()
         if any(held):
-            yield _vector(tr("reaction"), reactions[row], reactions, "kN", Particle.reaction, held)
+            if slanted := turned_supports(columns.model)[row]:
+                along = in_support_axes(columns.model, reactions)[row]
+                yield _vector(tr("along its axes"), along, reactions, "kN", Particle.reaction, held)
+            either = [True, True] if slanted else held
+            yield _vector(tr("reaction"), reactions[row], reactions, "kN", Particle.reaction, either)
         if turns and clamped:
             moment = columns("particles.reaction_moment")
             yield _result(tr("reaction moment"), _number(moment[row], moment, "kN·m"), Particle.reaction_moment)

@@ -80,7 +80,7 @@ class Stamps:
     unit: float
     ink: Colour
     hollow: Colour
-    turns: int = 0
+    turns: float = 0
     of: Owners | None = None
 
 

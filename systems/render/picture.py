@@ -23,7 +23,7 @@ from pinjoint.systems.render.model.cuts import draw_cuts
 from pinjoint.systems.render.model.diagrams import draw_diagrams
 from pinjoint.systems.render.model.free_bodies import draw_free_bodies
 from pinjoint.systems.render.model.members import draw_distributed_forces, draw_hinges, draw_moments
-from pinjoint.systems.render.model.sheet import DIRECTIONS, MANY, Sheet, Shown, Stage, measure
+from pinjoint.systems.render.model.sheet import MANY, Sheet, Shown, Stage, measure
 from pinjoint.systems.render.model.structure import (
     draw_deflected,
     draw_ghost,
@@ -237,4 +237,5 @@ def _lines_of(mark: Mark, unit: float) -> Iterator[_Lines]:
             for k in range(corners.shape[1]):
                 yield corners[:, k - 1], corners[:, k], REACH * unit, of
         case Stamps(_, at, size, turns=turns, of=(str(), _) as of):
-            yield at, at + size * DIRECTIONS[turns], size / 2, of
+            quarter = 0.5 * np.pi * turns
+            yield at, at + size * np.array([np.cos(quarter), np.sin(quarter)]), size / 2, of

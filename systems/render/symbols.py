@@ -33,11 +33,14 @@ _SQUARE = 9.5  # points, half the side of a square around a joint that cannot tu
 
 
 def turned_parts(stamp: Stamps) -> Parts:
-    """The polygons of a stamp about its place in pixels, by its quarter turns clockwise.
+    """The polygons of a stamp about its place in pixels, by its turns clockwise.
 
     The size of an icon is how many pixels the unit of its square takes.
     """
-    across, down = ((1, 0), (0, 1), (-1, 0), (0, -1))[stamp.turns % 4]
+    if stamp.turns % 1.0:
+        across, down = math.cos(0.5 * math.pi * stamp.turns), math.sin(0.5 * math.pi * stamp.turns)
+    else:
+        across, down = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(stamp.turns) % 4]
     turn = np.array([[across, down], [-down, across]], dtype=np.float64)
     if stamp.symbol in SYMBOLS:
         parts = SYMBOLS[stamp.symbol](stamp.size, stamp.unit)

@@ -15,7 +15,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Column, Role
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.model import Model
-from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.numeric_range import immovable, incomputable
 from pinjoint.components.rod import idle_moment
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.world import Derivation
@@ -180,7 +180,7 @@ class Simulation:
     def _arm(self) -> None:
         """Get ready to run after edits: account for them, choose the step size, keep a safe state."""
         if not self.armed:
-            problem = incomputable(self.model)
+            problem = incomputable(self.model) or immovable(self.model)
             if not problem:
                 parted = self._parted() if self.programs.collides else ""
                 self.program.commit()  # rods that edits left beyond a strength yield

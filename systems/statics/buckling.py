@@ -269,7 +269,7 @@ def _factors(structure: Structure, vectors: Array, steady: Matrix, softening: Ma
         if structure.bending is not None:
             slopes = structure.slope_rates(structure.spread(vector), structure.unmoved)
             energy += float((slopes * structure.bending.moments(slopes)).sum())
-        energy += float(vector @ (structure.gather(structure.springs) * vector))
+        energy += float(vector @ (structure.unknown_springs * vector))
         energy += float(vector @ (steady @ vector))
         found.append(-energy / float(vector @ (softening @ vector)))
     return np.array(found)

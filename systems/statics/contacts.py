@@ -90,6 +90,7 @@ class Discs:
             position=self.start,
             fixed=np.concatenate([structure.fixed, still == 0.0]),
             springs=np.concatenate([structure.springs, still]),
+            angle=np.concatenate([structure.angle, np.zeros(len(still))]),
             unknown=np.concatenate([structure.unknown, still != 0.0]),
             body=np.concatenate([structure.body, structure.body.max() + 1 + np.arange(len(still))]),
             own_weight=np.concatenate([structure.own_weight, still[:, 0]]),

@@ -20,7 +20,7 @@ from pinjoint.components.derived import with_full_turns
 from pinjoint.components.field import SMALLEST
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
-from pinjoint.components.particle import spring_stiffness
+from pinjoint.components.particle import spring_stiffness, turned, turned_supports
 from pinjoint.components.rod import bends
 from pinjoint.components.table import flags
 from pinjoint.components.theory import EXACT, FIRST_ORDER, THEORIES
@@ -130,7 +130,8 @@ class Structure:
         every body that nothing holds along an axis (its translation is arbitrary). Where members bend,
         (n, 3) with the rotations of particles with rigid rod ends, as `fixed` with their clamps.
     body: number of the connected body of each particle, (n,).
-    springs: stiffness of elastic supports, 0 in fixed directions, (n, 2) or (n, 3).
+    springs: stiffness of elastic supports, 0 in fixed directions, (n, 2) or (n, 3). angle: by which the axes of supports are
+        turned (rad), (n,): `fixed`, `springs` and `unknown` are along these, fields along x and y.
     sense: 1 for cables (tension only), −1 for contacts (compression only), else 0.
     own_weight: stiffness added to that of its rods in the `weight` of a particle (kN/m), (n,).
     flat: rods whose axis keeps its direction, such as contacts with a straight side.
@@ -150,6 +151,7 @@ class Structure:
     sense: Array
     fixed: Flags
     springs: Array
+    angle: Array
     unknown: Flags
     body: Rows
     own_weight: Array
@@ -171,6 +173,8 @@ class Structure:
         width = 2 if bending is None else 3
         fixed = np.column_stack([particles.fixed, particles.fixed_rotation])[:, :width]
         springs = spring_stiffness(model)[:, :width]
+        angle, held = np.where(turned_supports(model), particles.support_angle, 0.0), fixed | (springs > 0.0)
+        held[angle != 0.0, :2] = True  # in part, along x and y
         return cls(
             position=particles.position.copy(),
             ends=ends,
@@ -184,7 +188,8 @@ class Structure:
             sense=rods.tension_only.astype(np.float64),
             fixed=fixed,
             springs=springs,
-            unknown=_held_by_rods(springs, ends, bending) & ~fixed & ~_arbitrary(fixed | (springs > 0.0), body),
+            angle=angle,
+            unknown=_held_by_rods(springs, ends, bending) & ~fixed & ~_arbitrary(held, body),
             body=body,
             own_weight=np.zeros(particles.count),
             flat=np.zeros(rods.count, dtype=bool),
@@ -208,7 +213,15 @@ class Structure:
 
     def of_supports(self, field: Array) -> Array:
         """A field in fixed directions, else 0."""
-        return np.where(self.fixed, field, 0.0)
+        return self.along_axes(np.where(self.fixed, self.along_supports(field), 0.0))
+
+    def along_supports(self, field: Array) -> Array:
+        """A field along the axes of supports."""
+        return turned(field, self.angle)
+
+    def along_axes(self, field: Array) -> Array:
+        """A field along x and y, of one along the axes of supports."""
+        return turned(field, -self.angle)
 
     def of_unknowns(self, field: Array) -> Array:
         """A field in the directions of unknowns, else 0."""
@@ -280,7 +293,7 @@ class Structure:
         measure = np.ones(self.unknown.shape)
         if self.bending is not None:
             measure[:, 2] = self.rest_length[self.bending.rigid.any(axis=1)].mean()
-        return self.gather(measure)
+        return self._of_unknowns(measure)
 
     def largest(self, field: Array) -> float:
         """The largest force (kN) in a field of forces, moments counting by their levers."""
@@ -295,17 +308,30 @@ class Structure:
 
     def greatest(self, vector: Array) -> float:
         """The same of the unknowns' forces."""
-        return largest(vector) if self.bending is None else largest(vector * self.gather(self.lever))
+        return largest(vector) if self.bending is None else largest(vector * self._of_unknowns(self.lever))
 
     def gather(self, field: Array) -> Array:
         """The unknowns in a field."""
-        return field.ravel()[self.index]
+        return self._of_unknowns(self.along_supports(field))
+
+    def _of_unknowns(self, values: Array) -> Array:
+        """Values along the axes of supports (n, …), those of unknowns."""
+        return values.ravel()[self.index]
+
+    @property
+    def unknown_springs(self) -> Array:
+        """The stiffness of springs along each unknown, (N,)."""
+        return self._of_unknowns(self.springs)
+
+    def masses_of_unknowns(self, values: Array) -> Array:
+        """Masses, alike along all axes (n, …), of each unknown."""
+        return self._of_unknowns(values)
 
     def spread(self, vector: Array) -> Array:
         """A vector of unknowns as a field, zero elsewhere."""
         field = np.zeros(self.unknown.shape)
         field.ravel()[self.index] = vector
-        return field
+        return self.along_axes(field)
 
     def fields(self, vectors: Array) -> Array:
         """Vectors of unknowns (N, k) as fields (k, n, 2)."""
@@ -364,7 +390,7 @@ class Structure:
         if self.bending is not None:
             of_ends = self.bending.end_stiffness[:, ::2].ravel()
             weight = np.column_stack([weight, np.bincount(self.ends.ravel(), of_ends, len(weight))])
-        return self.gather(weight + self.springs)
+        return self._of_unknowns(weight + self.springs)
 
     def effort(self, vector: Array, response: Response) -> float:
         """The energy (kN·m) beside which that of a motion is round-off: of rods that resist it with all they have.
@@ -381,7 +407,7 @@ class Structure:
             response.length > 0.0, response.length, np.inf
         )
         bent = self.bending.end_stiffness[:, ::2] * (turns + leaning[:, None]) ** 2
-        sprung = (self.springs * field**2).sum()
+        sprung = (self.springs * self.along_supports(field) ** 2).sum()
         return float((self.stiffness / self.rest_length) @ along**2 + bent.sum() + sprung)
 
     # --- forces --------------------------------------------------------------------------------------
@@ -395,6 +421,12 @@ class Structure:
     def initial_tangent(self) -> Matrix:
         """The tangent at the original positions, without axial forces and with taut cables."""
         return self.tangent(self.unmoved, np.zeros(len(self.ends), dtype=bool), geometric=False)
+
+    @property
+    def stiffnesses(self) -> Array:
+        """k of every rod at the original positions, along the axes of supports, (rods, 2 × width, 2 × width)."""
+        rigid = np.zeros(len(self.ends), dtype=bool)
+        return self._turned(self.tangents(self.unmoved, rigid, geometric=False))
 
     def respond(self, displacement: Array, plastic_strain: Array, share: float = 0.0) -> Response:
         """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p.
@@ -432,8 +464,11 @@ class Structure:
             round_off=self._round_off_of_forces(displacement, plastic_strain, bent),
             bent=bent,
             share=share,
-            spring_force=self.springs * displacement if self.is_sprung else 0.0,
+            spring_force=self._pull_of_springs(displacement) if self.is_sprung else 0.0,
         )
+
+    def _pull_of_springs(self, displacement: Array) -> Array:
+        return self.along_axes(self.springs * self.along_supports(displacement))
 
     @cached_property
     def is_sprung(self) -> bool:
@@ -500,9 +535,9 @@ class Structure:
         stretched = (self.relative(field) * response.axis).sum(axis=1)
         pull = (self.stiffness / self.rest_length * stretched)[:, None] * response.axis
         if self.bending is None:
-            return self.scatter(pull) + self.springs * field
+            return self.scatter(pull) + self._pull_of_springs(field)
         slopes = self.slope_rates(field, response)
-        return self.held(self.bending.moments(slopes), pull) + self.springs * field
+        return self.held(self.bending.moments(slopes), pull) + self._pull_of_springs(field)
 
     def held(self, moment: Array, pull: Array | float = 0.0) -> Array:
         """The same against rods with moments on their ends (rods, 2), and axial forces as vectors (rods, 2)."""
@@ -572,7 +607,22 @@ class Structure:
     # --- tangent -------------------------------------------------------------------------------------
 
     def tangent(self, response: Response, soft: Flags, *, geometric: bool = True) -> Matrix:
-        """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of soft rods) + Σ N/L (1 − a aᵀ), and what bending adds."""
+        """dF/du over the unknowns, the sum of what every rod and every spring adds."""
+        matrix = self.matrix(self.tangents(response, soft, geometric=geometric))
+        if not self.is_sprung:
+            return matrix
+        springs = self.unknown_springs
+        if isinstance(matrix, np.ndarray):
+            return matrix + np.diag(springs)
+        from scipy.sparse import csc_matrix, diags
+
+        return csc_matrix(matrix + diags(springs))
+
+    def tangents(self, response: Response, soft: Flags, *, geometric: bool) -> Array:
+        """dF/du of every rod over the coordinates of both ends, (rods, 2, width, 2, width).
+
+        EA/L₀ a aᵀ (not of soft rods) + N/L (1 − a aᵀ), and what bending adds.
+        """
         along = np.where(soft, 0.0, self.stiffness / self.rest_length)
         across = np.zeros_like(along)
         geometric = geometric and not self.first_order
@@ -591,15 +641,29 @@ class Structure:
                 response.bent, along, response.axial_force, a, response.length, geometric
             ).reshape(-1, 2, 3, 2, 3)
             parts[:, :, :2, :, :2] += bars
-        matrix = self.assembly.matrix(parts.ravel())
-        if not self.is_sprung:
-            return matrix
-        springs = self.gather(self.springs)
-        if isinstance(matrix, np.ndarray):
-            return matrix + np.diag(springs)
-        from scipy.sparse import csc_matrix, diags
+        return parts
 
-        return csc_matrix(matrix + diags(springs))
+    def matrix(self, parts: Array) -> Matrix:
+        """Sum of the rods' matrices (rods, …) of the coordinates of both ends, along the axes of supports."""
+        return self.assembly.matrix(self._turned(parts).ravel())
+
+    def _turned(self, parts: Array) -> Array:
+        """Matrices of rods, (rods, 2 × width, 2 × width), of the coordinates along the axes of supports."""
+        parts = self._by_supports(parts.reshape(len(self.ends), 2 * self.width, -1), self.ends)
+        return self._by_supports(parts.swapaxes(1, 2), self.ends)
+
+    def _by_supports(self, by_ends: Array, ends: Rows) -> Array:
+        """Of rows (k, …, coordinates of two particles) those by their coordinates along the axes of supports."""
+        if not self.angle.any():
+            return by_ends
+        found = by_ends.copy()
+        for end in range(2):
+            shape = (-1, *(1,) * (by_ends.ndim - 2))
+            cosine, sine = (part(self.angle[ends[:, end]]).reshape(shape) for part in (np.cos, np.sin))
+            x, y = (by_ends[..., self.width * end + axis] for axis in (0, 1))
+            found[..., self.width * end] = cosine * x + sine * y
+            found[..., self.width * end + 1] = cosine * y - sine * x
+        return found
 
     @property
     def deformations(self) -> int:
@@ -610,7 +674,7 @@ class Structure:
     @property
     def sprung(self) -> Flags:
         """Which unknowns springs hold, (N,)."""
-        return self.gather(self.springs) > 0.0
+        return self.unknown_springs > 0.0
 
     def compatibility(self, response: Response) -> csc_matrix:
         """Deformations of rods and springs from the unknowns; its transpose is the equilibrium matrix.
@@ -624,6 +688,7 @@ class Structure:
             by_slopes = self._slopes_by_ends(response)
             by_ends = np.concatenate([by_ends, by_slopes[rigid]])
             ends = np.concatenate([ends, np.repeat(self.ends, rigid.sum(axis=1), axis=0)])
+        by_ends = self._by_supports(by_ends, ends)
         found = spread_by_ends(by_ends, ends, len(self.position))[:, self.index]
         if self.is_sprung:
             from scipy.sparse import identity, vstack
@@ -648,7 +713,8 @@ class Structure:
     def elongations(self, response: Response, rows: Rows) -> Array:
         """The elongations of some rods from the unknowns, in full, (k, N)."""
         matrix = np.zeros((len(rows), *self.unknown.shape))
-        of_ends = self._elongations(response)[rows].reshape(-1, 2, self.width)
+        of_ends = self._by_supports(self._elongations(response)[rows], self.ends[rows])
+        of_ends = of_ends.reshape(-1, 2, self.width)
         for end in range(2):
             matrix[np.arange(len(rows)), self.ends[rows, end]] = of_ends[:, end]
         return matrix.reshape(len(rows), -1)[:, self.index]

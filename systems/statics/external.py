@@ -113,7 +113,8 @@ def loose_bodies(structure: Structure, load: Array) -> list[LooseBody]:
     members = np.bincount(structure.body, minlength=count)
     found = []
     for axis in range(2):
-        held = np.bincount(structure.body, structure.supported[:, axis], count) > 0
+        holds = structure.supported[:, axis] | (structure.angle != 0.0)
+        held = np.bincount(structure.body, holds, count) > 0
         net = np.bincount(structure.body, load[:, axis], count)
         gross = np.bincount(structure.body, np.abs(load[:, axis]), count)
         pulled = np.abs(net) > NO_NET_FORCE * gross

@@ -82,6 +82,7 @@ class Divided:
             misfit=whole.misfit[row] / parts[row],
             fixed=np.pad(whole.fixed, ((0, len(between)), (0, 0))),
             springs=np.pad(whole.springs, ((0, len(between)), (0, 0))),
+            angle=np.pad(whole.angle, (0, len(between))),
             body=np.concatenate([whole.body, whole.body[whole.ends[inner[0], 0]]]),
             own_weight=np.pad(whole.own_weight, (0, len(between))),
             bending=bending,
@@ -140,13 +141,13 @@ class Divided:
         ]
         scale = np.stack([one, one, length, one, one, length], axis=1)
         block = scale[:, :, None] * scale[:, None, :] * rows * (self.mass * length / 420e3)[:, None, None]
-        full = structure.assembly.matrix((way.swapaxes(1, 2) @ block @ way).ravel())
+        full = structure.matrix(way.swapaxes(1, 2) @ block @ way)
         point = np.pad(self.point / 1000.0, ((0, len(self.inner[0])), (0, 0)))
         if isinstance(full, np.ndarray):
-            return full + np.diag(structure.gather(point))
+            return full + np.diag(structure.masses_of_unknowns(point))
         from scipy.sparse import csc_matrix, diags
 
-        return csc_matrix(full + diags(structure.gather(point)))
+        return csc_matrix(full + diags(structure.masses_of_unknowns(point)))
 
 
 def _bending(model: Model) -> Structure:

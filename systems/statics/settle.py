@@ -209,7 +209,8 @@ class _Settling:
         while share < 1.0 and step > SMALLEST_GROWTH:
             further = min(share + step, 1.0)
             path = Path(self.structure.grown(further), self._nothing, self._nothing)
-            known = np.where(self.structure.unknown, point.displacement, further * moved)
+            held = moved - self.structure.of_unknowns(moved)
+            known = self.structure.of_unknowns(point.displacement) + further * held
             found = path.correct(point, known, 0.0, None)
             if found is None:
                 unyielding = Path(elastic.grown(further), self._nothing, self._nothing)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pinjoint.components.derived import diagrams
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
+from pinjoint.components.particle import of_rigid_supports
 from pinjoint.components.rod import bends
 from pinjoint.systems.statics.equations import Array, Flags, Response, Rows, Structure
 from pinjoint.systems.statics.events import Event
@@ -162,5 +163,5 @@ class Start:
     def undeformed(cls, model: Model, plastic_strain: Array) -> Start:
         """The undeformed beginning with this plastic strain: only supports that have settled are displaced."""
         particles = model.particles
-        moved = np.where(particles.fixed, particles.displacement, 0.0)
+        moved = of_rigid_supports(model, particles.displacement)
         return cls(moved, plastic_strain, np.where(particles.fixed_rotation, particles.rotation, 0.0))

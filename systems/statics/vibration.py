@@ -59,7 +59,7 @@ class Vibrations:
         place, response = np.zeros(whole.unknown.shape), whole.unmoved
         if state is not None:
             place, response = _present(whole, state)
-        mass = whole.gather(masses) / 1000.0
+        mass = whole.masses_of_unknowns(masses) / 1000.0
         values, vectors = _modes(whole, response, state is not None, mass, count)
         lumped = np.sqrt(values[values > 0.0][:1]) / (2.0 * np.pi)
         structure, total = whole, whole.size

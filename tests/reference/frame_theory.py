@@ -110,7 +110,10 @@ class Found:
 
 
 def assembled(document: Document) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[Member]]:
-    """The stiffness of all coordinates, the loads on them, which are held, which turn nothing, and the members."""
+    """The stiffness of all coordinates, the loads on them, which are held, which turn nothing, and the members.
+
+    Coordinates are along the axes of supports.
+    """
     particles, rods = document["particles"], document["rods"]
     row = {particle["name"]: i for i, particle in enumerate(particles)}
     members = []
@@ -129,10 +132,21 @@ def assembled(document: Document) -> tuple[np.ndarray, np.ndarray, np.ndarray, n
     held = np.array(
         [[*p.get("fixed", (False, False)), p.get("fixed_rotation", False)] for p in particles]
     ).ravel()
-    matrix += np.diag(springs_of(particles))
+    turn = axes_of(particles)
+    matrix = turn @ matrix @ turn.T + np.diag(springs_of(particles))
+    load, applied = turn @ load, turn @ applied
     rigid = {of.places[end] for of in members for end in (2, 5) if of.springs.get(end, 1.0)}
     still = np.array([i % 3 == 2 and i not in rigid for i in range(size)])
     return matrix, load + applied, held, still, members
+
+
+def axes_of(particles: list[Document]) -> np.ndarray:
+    """By which vectors of all coordinates become those along the axes of supports."""
+    turn = np.eye(3 * len(particles))
+    for place, facts in enumerate(particles):
+        cosine, sine = np.cos(facts.get("support_angle", 0.0)), np.sin(facts.get("support_angle", 0.0))
+        turn[3 * place : 3 * place + 2, 3 * place : 3 * place + 2] = [[cosine, sine], [-sine, cosine]]
+    return turn
 
 
 def springs_of(particles: list[Document]) -> np.ndarray:
@@ -147,9 +161,11 @@ def solve(document: Document) -> Found:
     matrix, load, held, still, members = assembled(document)
     free = ~held & ~still
     placed = [[*p.get("displacement", (0.0, 0.0)), p.get("rotation", 0.0)] for p in particles]
-    moved = np.where(held & ~still, np.array(placed).ravel(), 0.0)
+    turn = axes_of(particles)
+    moved = np.where(held & ~still, turn @ np.array(placed).ravel(), 0.0)
     moved[free] = np.linalg.solve(matrix[np.ix_(free, free)], (load - matrix @ moved)[free])
-    reaction = (np.where(held, matrix @ moved - load, 0.0) - springs_of(particles) * moved).reshape(-1, 3)
+    reaction = np.where(held, matrix @ moved - load, 0.0) - springs_of(particles) * moved
+    reaction, moved = (turn.T @ reaction).reshape(-1, 3), turn.T @ moved
     names = [particle["name"] for particle in particles]
     of_rods = {rod["name"]: end_forces(of, moved) for rod, of in zip(rods, members, strict=True)}
     return Found(

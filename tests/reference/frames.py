@@ -79,7 +79,10 @@ def energy(model: Model, displacement: Any, rotation: Any) -> Any:
     """Elastic energy, of supports too, less the work of all constant forces and moments (kN·m)."""
     particles = model.particles
     total = -(particles.constant_force * displacement).sum() - (particles.constant_moment * rotation).sum()
-    total += 0.5 * (particles.support_springs * displacement**2).sum()
+    cosine, sine = np.cos(particles.support_angle), np.sin(particles.support_angle)
+    x, y = displacement.T
+    total += 0.5 * (particles.support_springs[:, 0] * (cosine * x + sine * y) ** 2).sum()
+    total += 0.5 * (particles.support_springs[:, 1] * (cosine * y - sine * x) ** 2).sum()
     total += 0.5 * (particles.rotation_spring * rotation**2).sum()
     for row, (first, second) in enumerate(model.rods.between.astype(int).tolist()):
         shift = displacement[second] - displacement[first]

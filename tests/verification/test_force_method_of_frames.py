@@ -11,11 +11,13 @@ from hypothesis import strategies as st
 from pinjoint.commands import force_method as command
 from pinjoint.commands.command_line import main
 from pinjoint.components.model import Model
+from pinjoint.components.particle import in_support_axes
 from pinjoint.documents import models
 from pinjoint.documents.models import parse
-from pinjoint.systems.statics.force_method import SetState, Solution, solve
+from pinjoint.systems.statics.force_method import Solution, solve
+from pinjoint.systems.statics.superposition import SetState
 from pinjoint.systems.statics.theory import Indeterminacy, linear
-from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, redundants
+from pinjoint.systems.statics.unknowns import MethodError, Unknown, redundants
 from tests.reference.models import model, random_truss
 from tests.verification.test_frame_theory import EI, beam, free, held, random_frame
 
@@ -58,7 +60,8 @@ def checked(made: Model, unknowns: list[Unknown], within: float = 1e-9) -> Solut
 def moved(made: Model, unknown: Unknown, state: SetState) -> float:
     """How far a support is displaced, or the ends of a bar are farther apart, in a set."""
     if unknown.of_support:
-        return float(np.column_stack([state.displacement, state.rotation])[unknown.place])
+        place = in_support_axes(made, np.column_stack([state.displacement, state.rotation]))
+        return float(place[unknown.place])
     row = unknown.element.row
     first, second = state.displacement[made.rods.between[row]]
     return float((second - first) @ made.rods.difference[row] / made.rods.original_length[row])
@@ -180,7 +183,7 @@ def test_random_trusses_with_warm_and_misfitting_rods(seed: int) -> None:
 )
 def test_unknowns_that_are_none_are_explained(name: str, words: str) -> None:
     made = propped()
-    with pytest.raises(ForceMethodError, match=words):
+    with pytest.raises(MethodError, match=words):
         solve(made, [Unknown.named(made, name)])
 
 

@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from pinjoint.components.model import Model
+from pinjoint.components.particle import in_support_axes
 from pinjoint.documents.models import parse
 from pinjoint.session import Session
 from pinjoint.systems.statics.factor import is_held, soft_modes
@@ -38,7 +39,8 @@ def held_by_reference(loaded: Model, state: StaticState, within: float) -> None:
     particles = loaded.particles
     size = max(float(np.abs(state.axial_force).max()), float(np.abs(particles.constant_force).max()))
     rigid = particles.inertia > 0.0
-    sprung = particles.support_springs * state.displacement
+    along = particles.support_springs * in_support_axes(loaded, state.displacement)
+    sprung = in_support_axes(loaded, along, back=True)
     assert np.abs(np.where(particles.fixed, -force, -sprung) - state.reaction).max() < within * size
     turned = np.where(particles.fixed_rotation, -moment, -particles.rotation_spring * state.rotation)
     assert np.abs((turned - state.reaction_moment) * rigid).max() < within * size

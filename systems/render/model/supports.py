@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components import written
 from pinjoint.components.model import Model
-from pinjoint.components.particle import is_sprung
+from pinjoint.components.particle import is_sprung, turned, turned_supports
 from pinjoint.components.rod import rigid_joints
 from pinjoint.systems.render.marks import Points, Rows, Stamps, Truths, Values
 from pinjoint.systems.render.model.sheet import DIRECTIONS, MANY, Sheet
-from pinjoint.systems.render.model.values import write_spring
+from pinjoint.systems.render.model.values import write_beside, write_spring
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 
 RIGHT, DOWN, LEFT, UP = range(4)
@@ -137,19 +138,27 @@ def _draw_springs(sheet: Sheet, rows: Rows) -> None:
 
 
 def _stand(sheet: Sheet, symbol: str, side: int, of: Rows) -> Points:
-    """A symbol at a side of some particles; returns the middles of the symbols."""
-    size = SUPPORT_DEPTH * sheet.unit
-    coiled = (sheet.model.particles.rotation_spring[of] > 0.0) & rigid_joints(sheet.model)[of]
+    """A symbol at a side of some particles, turned as their supports are; returns the middles of the symbols."""
+    size, particles = SUPPORT_DEPTH * sheet.unit, sheet.model.particles
+    coiled = (particles.rotation_spring[of] > 0.0) & rigid_joints(sheet.model)[of]
     rim = np.where(coiled, _SPIRAL * sheet.unit, sheet.radii[of] - sheet.unit)
-    apex = sheet.centres[of] + DIRECTIONS[side] * rim[:, None]
-    _stamp(sheet, symbol, apex, side, of)
-    middle: Points = apex + DIRECTIONS[side] * size / 2
+    angle = np.where(turned_supports(sheet.model)[of], particles.support_angle[of], 0.0)
+    outward = turned(np.broadcast_to(DIRECTIONS[side], (len(of), 2)), angle)  # y is down
+    apex = sheet.centres[of] + outward * rim[:, None]
+    for one in np.unique(angle):
+        alike = angle == one
+        _stamp(sheet, symbol, apex[alike], side - float(one) / (0.5 * np.pi), of[alike])
+    middle: Points = apex + outward * size / 2
     sheet.occupancy.parts.add(("particles", of), middle, middle, size / 2)
     sheet.occupancy.block_squares(middle[:MANY], np.full(len(middle[:MANY]), size / 2))
+    for at, row in zip(middle[angle != 0.0][:MOST], of[angle != 0.0].tolist(), strict=False):
+        key, owner = ("particles.support_angle", row), ("particles", row)
+        degrees = written.given(float(np.degrees(particles.support_angle[row])), written.DIGITS)
+        write_beside(sheet, at, size / 2, f"{degrees}°", key, owner)
     return middle
 
 
-def _stamp(sheet: Sheet, symbol: str, at: Points, side: int, rows: Rows) -> None:
+def _stamp(sheet: Sheet, symbol: str, at: Points, side: float, rows: Rows) -> None:
     """The symbol of supports."""
     size, theme = SUPPORT_DEPTH * sheet.unit, sheet.theme
     sheet.marks.append(Stamps(symbol, at, size, sheet.unit, theme.ink, theme.hollow, side, ("particles", rows)))

@@ -115,10 +115,15 @@ def write_spring(
     sheet: Sheet, at: Points, radius: float, stiffness: float, unit: str, key: tuple[str, int], of: Owner
 ) -> None:
     """Write the stiffness of a spring beside its symbol."""
-    angle = np.radians([60.0, 120.0, -60.0, -120.0, 90.0, 0.0, 180.0, -90.0])
-    out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
     bare = written.given(stiffness, written.DIGITS)
     text = f"k = {written.stated(stiffness, unit, written.DIGITS) if sheet.view.has_units else bare}"
+    write_beside(sheet, at, radius, text, key, of)
+
+
+def write_beside(sheet: Sheet, at: Points, radius: float, text: str, key: tuple[str, int], of: Owner) -> None:
+    """Write what is given of a symbol beside it."""
+    angle = np.radians([60.0, 120.0, -60.0, -120.0, 90.0, 0.0, 180.0, -90.0])
+    out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
     write_around(sheet, at, radius, out, text, sheet.theme.ink, (key, of, of), 0.0, text)
 
 

@@ -9,12 +9,12 @@ import numpy as np
 from pinjoint.components.commands import Assign
 from pinjoint.components.field import MADE
 from pinjoint.components.model import Model
-from pinjoint.components.particle import supported
+from pinjoint.components.particle import in_support_axes, of_rigid_supports, supported, turned_supports
 from pinjoint.components.written import ROUNDING
 from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.external import External
-from pinjoint.systems.statics.force_method import SetState
 from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.superposition import SetState, Superposition
 from pinjoint.systems.statics.unknowns import Unknown
 
 _ACTING = {  # what loads, moves or strains a structure, by table
@@ -32,7 +32,7 @@ def elastic_copy(model: Model) -> Model:
         kept = [field.name for field in table.fields_in(*MADE)] + ["plastic_strain"] * (name == "rods")
         columns = {field: table.column(field) for field in kept}
         if name == "particles":
-            columns["displacement"] = np.where(table.fixed, table.displacement, 0.0)
+            columns["displacement"] = of_rigid_supports(model, table.displacement)
             columns["rotation"] = np.where(table.fixed_rotation, table.rotation, 0.0)
         if table.kind.single:
             [one] = copy.tables[name]
@@ -81,16 +81,31 @@ def loaded(model: Model, released: Sequence[Unknown], amounts: Sequence[float]) 
     return copy
 
 
-def still(copy: Model, whole: Model, state: SetState) -> Model:
-    """A copy of a structure, perhaps without some of its rods, undeformed, with the forces of a state; none may run."""
+def held(copy: Model, solution: Superposition) -> Model:
+    """The copy, in which the unknowns of the displacement method are constrained."""
+    fixed = np.column_stack([copy.particles.fixed, copy.particles.fixed_rotation])
+    for one in solution.unknowns:
+        fixed[one.place] = True
+    copy.assign(list(copy.particles), "fixed", fixed[:, :2].tolist())
+    copy.assign(list(copy.particles), "fixed_rotation", fixed[:, 2].tolist())
+    return copy
+
+
+def still(copy: Model, whole: Model, state: SetState, *, moved: bool = False) -> Model:
+    """A copy of a structure, perhaps without some of its rods, with the forces of a state; none may run.
+
+    moved: with its displacements; else undeformed.
+    """
     rods = copy.rods
     here = [whole.rods[name].row for name in rods.names]
-    copy.writable("particles.displacement")[...] = 0.0
-    copy.writable("particles.rotation")[...] = 0.0
-    if rods.bending_stiffness.any():
+    copy.writable("particles.displacement")[...] = state.displacement if moved else 0.0
+    copy.writable("particles.rotation")[...] = state.rotation if moved else 0.0
+    if rods.bending_stiffness.any() and not moved:
         copy.writable("rods.bending_stiffness")[...] *= _STIFF
     load = np.pad(External.of(copy).at(1.0), ((0, 0), (0, 1)))
-    counts = supported(copy) & (np.abs(state.reaction) > ROUNDING * largest(state.axial_force))
+    held = supported(copy)
+    held[:, :2] |= turned_supports(copy)[:, None]
+    counts = held & (np.abs(state.reaction) > ROUNDING * largest(state.axial_force))
     reaction = np.where(counts, state.reaction, 0.0)
     told = {
         "particles.reaction": reaction[:, :2],
@@ -116,7 +131,7 @@ def exact_forces(model: Model, unknowns: Sequence[Unknown]) -> list[float] | Non
     if not final.balanced:
         return None
     reaction, moment = (
-        np.column_stack([final.reaction, final.reaction_moment]),
+        in_support_axes(model, np.column_stack([final.reaction, final.reaction_moment])),
         final.diagrams["bending_moment"],
     )
     return [
