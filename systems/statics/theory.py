@@ -61,10 +61,8 @@ class FirstOrder:
         supports: displacements of constrained directions, else 0. share: of the distributed forces. rods: the structure, or
         one of another lack of fit.
         """
-        moved = supports + self.deflection(
-            load - rods.internal(_elastic(rods, supports, plastic_strain, share))
-        )
-        return moved, _elastic(rods, moved, plastic_strain, share)
+        moved = supports + self.deflection(load - rods.internal(elastic(rods, supports, plastic_strain, share)))
+        return moved, elastic(rods, moved, plastic_strain, share)
 
     def deflection(self, load: Array) -> Array:
         """Displacements (n, …) of the free directions under a load (n, …), without those that nothing resists.
@@ -111,7 +109,7 @@ class FirstOrder:
         return solution
 
 
-def _elastic(structure: Structure, displacement: Array, plastic_strain: Array, share: float) -> Response:
+def elastic(structure: Structure, displacement: Array, plastic_strain: Array, share: float) -> Response:
     """How rods respond of which none yields."""
     found = structure.respond(displacement, plastic_strain, share)
     return replace(found, axial_force=found.elastic_force, plastic_strain=plastic_strain)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pinjoint.components.bent import MOMENT
+from pinjoint.components.field import CM, on_screen
 from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.tags import DiagramShown
@@ -12,6 +13,7 @@ from pinjoint.editor.context import Context, Scene
 from pinjoint.editor.readouts import pinned, retype
 from pinjoint.editor.sliders import slider_stack
 from pinjoint.systems.base import Phase, System
+from pinjoint.systems.input.actions import METHODS
 
 
 class Statics(Scene):
@@ -19,7 +21,7 @@ class Statics(Scene):
 
     name = "statics"
     heading = marked("Statics")
-    targets = ("pause", "simulation", "properties", "save", "load", "force method")
+    targets = ("pause", "simulation", "properties", "save", "load", *METHODS)
 
     def enter(self, context: Context) -> None:
         """Show the diagrams of all elements, unless some are shown, and all of the model above the sliders."""
@@ -38,7 +40,10 @@ class Statics(Scene):
 
     def hint(self, context: Context) -> str:
         if pinned(context) is not None:
-            return tr("type x in cm     Esc or click again: take it away     Return properties     F1 help")
+            hint = marked(
+                "type x in {unit}     Esc or click again: take it away     Return properties     F1 help"
+            )
+            return tr(hint, unit=on_screen(CM[0])[0])
         if context.model.particles.count == 0:
             return tr("click a tool, then the canvas     right click menu     F1 help")
         return tr(
