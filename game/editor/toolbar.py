@@ -106,6 +106,7 @@ def _of_selection(context: Context, pixel: Vector) -> Groups:
         ("toggle diagrams", marked("force diagram")),
         ("probes.plot", marked("plot")),  # where the mod that plots is there
         ("new slider", marked("slider for its load or stiffness")),
+        ("next influence line", marked("influence lines")),
     ]
     yield [("properties", marked("properties")), *(results if particles or rods else ())]
     if particles:
@@ -158,7 +159,14 @@ def _of_canvas(context: Context) -> Groups:
         ],
         ["toggle run", "restart", "settle", "toggle statics", "next theory", "displacement method"],
         [
-            *("toggle diagrams", "toggle undeformed", "toggle free bodies", "toggle utilisation", "next shape"),
+            *(
+                "toggle diagrams",
+                "toggle undeformed",
+                "toggle free bodies",
+                "toggle utilisation",
+                "next shape",
+                "next influence line",
+            ),
             *("toggle table", "toggle theory", "toggle energy", "toggle events"),
         ],
         [*of_mods(draw=False)],
