@@ -21,7 +21,9 @@ USUAL_SPEED = 5.0  # m/s
 
 def usual(model: Model, field: str) -> float:
     """The usual size of a vector of elements: the largest there is, else one that suits the model."""
-    tables = [table for table in (model.particles, model.rods, model.loads) if field in table.fields]
+    tables = [
+        table for table in (model.particles, model.rods, model.loads, model.span_loads) if field in table.fields
+    ]
     largest = max(float(np.abs(table.column(field)).max(initial=0.0)) for table in tables)
     if largest > 0.0:
         return largest
@@ -29,6 +31,8 @@ def usual(model: Model, field: str) -> float:
         return USUAL_SPEED
     if field == "moment":
         return LEVER * usual(model, "force") * extent(model)
+    if field == "end_intensity":
+        return usual(model, "distributed_force")
     rods = model.rods
     span = float(rods.original_length.max(initial=0.0)) or 1.0
     if field == "distributed_force":
