@@ -114,12 +114,13 @@ class Cut:
 class Page:
     """Text in place of a model: lines, then a table whose columns are aligned; the first row is its head.
 
-    first: rows of the table that are scrolled away.
+    first: rows of the table that are scrolled away. whole: it is not parted into blocks side by side.
     """
 
     lines: tuple[str, ...] = ()
     table: Sequence[tuple[str, ...]] = ()
     first: int = 0
+    whole: bool = False
 
 
 @dataclass(frozen=True)

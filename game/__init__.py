@@ -8,7 +8,7 @@ session.py                  Session: the same with scenes and a picture, as scri
 editor/                     Context, and what changes it: scenes, actions, gestures; what the view says of it
 documents/                  models in files, open documents, undo and stepping back, autosave, preferences
 scripts/                    scripted sessions and lessons: written, recorded, played
-force_method/               the guide through the force method
+methods/                    the guides through the force and the displacement method
 sweeps/                     many variants of a model
 mods/ included/             extensions by others, and ours that are written like theirs
 api.py                      what mods and scripts may rely on, in one place

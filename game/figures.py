@@ -15,7 +15,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bends, nodes
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.view import Cut, View
-from pinjoint.force_method.guide import scale_to
+from pinjoint.methods.guide import scale_to
 from pinjoint.systems.render.backends.paper import GUTTER, PIXEL, ROOMS, WIDTH, Block, Figure, Layout
 from pinjoint.systems.render.marks import Mark, Strokes, Text
 from pinjoint.systems.render.model.arrows import largest_force

@@ -36,6 +36,8 @@ from pinjoint.systems.schedule import Schedule
 
 if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.buckling import Buckling
+    from pinjoint.systems.statics.displacement_method import Solution as DisplacementSolution
+    from pinjoint.systems.statics.force_method import Solution as ForceSolution
     from pinjoint.systems.statics.path import Curve
     from pinjoint.systems.statics.settle import Settlement
 
@@ -238,6 +240,33 @@ class Headless(Context):
         [28.7, -40.59, 28.7]
         """
         return self.document.statics.settled(theory, load_factors)
+
+    def force_method(self, *released: str) -> ForceSolution:
+        """The static unknowns of these names, such as "AC", "A.y" or "AB.start", by the force method; changes nothing.
+
+        Without names as many as needed. Its arrays are gap, flexibility and force, in m, rad, kN, kN·m; superposed is the
+        sum of its states base and units. Raises MethodError, a ValueError.
+        """
+        from pinjoint.systems.statics.force_method import solve
+        from pinjoint.systems.statics.unknowns import Unknown, redundants
+
+        unknowns = [Unknown.named(self.model, name) for name in released]
+        return solve(self.model, unknowns or redundants(self.model))
+
+    def displacement_method(self) -> DisplacementSolution:
+        """The displacements of joints by the displacement method, K Δ = F; changes nothing.
+
+        Its unknowns have names; its arrays are stiffness, load, displacement and members, k of every rod over the directions
+        of its ends, in m, rad, kN, kN·m; superposed is the sum of its states base and units. Raises MethodError.
+
+        >>> from pinjoint import Session
+        >>> found = Session.open("hyperstatic").displacement_method()
+        >>> [unknown.name for unknown in found.unknowns], found.stiffness.shape
+        (['A.x', 'B.x', 'B.y', 'C.x', 'C.y'], (5, 5))
+        """
+        from pinjoint.systems.statics.displacement_method import solve
+
+        return solve(self.model)
 
     def buckling(self, modes: int = 5, theory: str = FIRST_ORDER) -> Buckling:
         """Critical load factors by linear buckling, ascending, with their modes; changes nothing.

@@ -73,6 +73,9 @@ COMMANDS |= {
     "force-method": Command(
         _of("force_method"), marked("solve a statically indeterminate structure by the force method")
     ),
+    "displacement-method": Command(
+        _of("displacement_method"), marked("solve a truss or a frame by the displacement method")
+    ),
     "sheet": Command(_of("sheet"), marked("write a PDF with drawing, diagrams and tables of a structure")),
     "sweep": Command(_of("sweep"), marked("compute many variants of a model")),
     "plan": Command(_of("plan"), marked("list the systems that run in a scene, and why others do not")),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from argparse import Namespace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -10,12 +11,12 @@ import numpy as np
 
 from pinjoint.commands.arguments import Parser, UsageError, flag, option
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, model_of
-from pinjoint.commands.output import Row, add_output, aligned, writable, write, write_result
-from pinjoint.components.language import tr
-from pinjoint.components.view import CONVENTIONS, THESIS
-from pinjoint.force_method import index, words
-from pinjoint.force_method.copies import exact_forces
-from pinjoint.force_method.tables import PRODUCTS, Tables
+from pinjoint.commands.output import Row, Rows, add_output, aligned, writable, write, write_result
+from pinjoint.components.language import marked, tr
+from pinjoint.components.view import CONVENTIONS, TEXTBOOK, THESIS
+from pinjoint.methods import index, words
+from pinjoint.methods.copies import exact_forces
+from pinjoint.methods.tables import PRODUCTS, ForceTables, Tables
 from pinjoint.streams import tell
 from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.statics.force_method import solve
@@ -51,12 +52,7 @@ def command(words: Sequence[str]) -> int:
             count=MOST_SETS,
         ),
     )
-    option(parser, "--report FILE.pdf", "write the whole solution to a PDF as well", writable)
-    option(parser, "--set PATH=VALUE", "change the model first", action="append", default=[])
-    add_output(parser, default="json")
-    options = parser.parse_args(words)
-    if options.report is not None and not options.report.lower().endswith(".pdf"):
-        raise UsageError("--report {file}: write a file that ends with .pdf.", file=options.report)
+    options = parsed(parser, words)
     model, names = model_of(options), dict.fromkeys(options.release or ())
     solution = solve(model, [Unknown.named(model, one) for one in names] if names else redundants(model))
     if options.report is not None and not solution.unknowns:
@@ -65,21 +61,45 @@ def command(words: Sequence[str]) -> int:
             " gives its forces: pinjoint run {model} --static.",
             model=options.model,
         )
-    tables = Tables(model, solution)
-    laws = left_out_of_statics(model)
+    tables = ForceTables(model, solution)
     single, sets = options.release is not None and len(options.release) == 1, options.sets
     found = _data(tables, single=single, sets=sets or len(solution.unknowns) <= MOST_SETS)
-    write_result(options, found | {"left_out": laws}, _rows, partial(_lines, tables, options.convention))
-    if options.report is not None:
-        from pinjoint.force_method.report import report
+    left_out = marked("The force method leaves out the laws of mods: {laws}.")
+    return answer(options, tables, found, _rows, partial(_lines, tables, options.convention), left_out)
 
-        write(report(tables, options.convention), options.report)
+
+def parsed(parser: Parser, words: Sequence[str]) -> Namespace:
+    """What the words ask for, with the options that methods have in common. Raises UsageError."""
+    option(parser, "--report FILE.pdf", "write the whole solution to a PDF as well", writable)
+    option(parser, "--set PATH=VALUE", "change the model first", action="append", default=[])
+    add_output(parser, default="json")
+    options: Namespace = parser.parse_args(words)
+    if options.report is not None and not options.report.lower().endswith(".pdf"):
+        raise UsageError("--report {file}: write a file that ends with .pdf.", file=options.report)
+    return options
+
+
+def answer(
+    options: Namespace,
+    tables: Tables,
+    found: Mapping[str, Any],
+    rows: Rows,
+    lines: Callable[[Any], Iterable[str]],
+    left_out: str,
+) -> int:
+    """Write a solution, and its report; returns the exit status. left_out: the sentence about laws that it leaves out."""
+    laws = left_out_of_statics(tables.model)
+    write_result(options, {**found, "left_out": laws}, rows, lines)
+    if options.report is not None:
+        from pinjoint.methods.report import report
+
+        write(report(tables, getattr(options, "convention", TEXTBOOK)), options.report)
     if laws:
-        tell(tr("The force method leaves out the laws of mods: {laws}.", laws=", ".join(laws)))
+        tell(tr(left_out, laws=", ".join(laws)))
     return NOT_ANSWERED if laws else ANSWERED
 
 
-def _data(tables: Tables, *, single: bool, sets: bool) -> dict[str, Any]:
+def _data(tables: ForceTables, *, single: bool, sets: bool) -> dict[str, Any]:
     """The solution as plain data, in m, rad, kN, kN·m: displacements and unknowns in lists and matrices.
 
     single: there is one unknown, so that its numbers stand alone. virtual_work: of every rod, in the order of the sums.
@@ -108,7 +128,7 @@ def _data(tables: Tables, *, single: bool, sets: bool) -> dict[str, Any]:
     }
 
 
-def _work(tables: Tables) -> dict[str, Any]:
+def _work(tables: ForceTables) -> dict[str, Any]:
     """By rod: what the sums of virtual work are made of; n, m and terms of each unknown in the order of `released`."""
     axial, bending = tables.solution.work.axial, tables.solution.work.bending
     found, count, rods, base = (
@@ -165,7 +185,7 @@ def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
         yield name, real, base, *row, force, exactly
 
 
-def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterator[str]:
+def _lines(tables: ForceTables, convention: str, found: Mapping[str, Any]) -> Iterator[str]:
     """The solution to read: in the textbook's convention with its tables, in the thesis' with its displacements."""
     solution = tables.solution
     yield from aligned(_rows(found))
@@ -174,7 +194,7 @@ def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterato
     if not found["virtual_work"]:
         yield ""
         yield tr("What each unknown alone does is left out, for there are many; --sets writes it.")
-        yield from _forces(tables)
+        yield from forces(tables)
         return
     yield ""
     for i, unknown in enumerate(solution.unknowns):
@@ -191,10 +211,10 @@ def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterato
             yield from aligned(table[:])
     yield ""
     yield from words.equations(tables)
-    yield from _forces(tables)
+    yield from forces(tables)
 
 
-def _forces(tables: Tables) -> Iterator[str]:
+def forces(tables: Tables) -> Iterator[str]:
     """The forces and reactions of the structure, N₀ + Σ X n."""
     for table in (tables.axial_forces(), tables.moments() if tables.bends else None, tables.reactions()):
         if table:

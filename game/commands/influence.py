@@ -16,7 +16,7 @@ from pinjoint.systems.statics.equations import AXES
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion
 from pinjoint.systems.statics.theory import Indeterminacy, influence_line, mechanisms
-from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown
+from pinjoint.systems.statics.unknowns import MethodError, Unknown
 from pinjoint.systems.statics.verify import QUANTITIES
 
 NOTHING = 1e-12  # of the largest value beside it: round-off
@@ -27,7 +27,7 @@ def influence(model: Model, names: Sequence[str]) -> dict[str, Any]:
 
     names: a rod "AB" (its axial force), where it bends "AB.start", "AB.end" (bending moments) or "AB.shear"; a constraint
     "A.y" or "A.rotation" (its reaction, kN per kN), or a free direction (its displacement, m per kN, by the unit-load
-    method). Raises ForceMethodError for other names, and NoEquilibrium for a mechanism.
+    method). Raises MethodError for other names, and NoEquilibrium for a mechanism.
     """
     if Indeterminacy.of(model).mechanisms:
         moving = describe_motion(model, mechanisms(model))
@@ -49,7 +49,7 @@ def influence(model: Model, names: Sequence[str]) -> dict[str, Any]:
 
 
 def _influenced(model: Model, name: str) -> tuple[str, int, int]:
-    """The quantity, row and axis (or end of a rod) that a name means. Raises ForceMethodError."""
+    """The quantity, row and axis (or end of a rod) that a name means. Raises MethodError."""
     place, _, what = name.rpartition(".")
     if name in model.rods:
         return "axial_force", model.rods[name].row, 0
@@ -57,18 +57,18 @@ def _influenced(model: Model, name: str) -> tuple[str, int, int]:
         row = model.rods[place].row
         rigid = (model.rods.turning_shares[row] > 0.0).tolist()
         if not any(rigid):
-            raise ForceMethodError(
+            raise MethodError(
                 "{rod} does not bend, so it has no bending moments and no shear force.", rod=place
             )
         if what == "shear":
             return "shear", row, 0
         if not rigid[ENDS.index(what)]:
-            raise ForceMethodError("{end} is hinged, so there is no bending moment.", end=name)
+            raise MethodError("{end} is hinged, so there is no bending moment.", end=name)
         return "bending_moment", row, ENDS.index(what)
     if place in model.particles and what in AXES:
         row, axis = model.particles[place].row, AXES.index(what)
         if axis == 2 and model.particles.inertia[row] == 0.0:
-            raise ForceMethodError(
+            raise MethodError(
                 "{particle} has no rotation, because no rod that bends is rigidly joined to it; choose another one.",
                 particle=place,
             )

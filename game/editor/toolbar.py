@@ -16,7 +16,7 @@ from pinjoint.editor.gestures.drawing import tool_in_hand
 from pinjoint.systems.edit.dividing import DIVISIONS
 from pinjoint.systems.edit.rods import is_rigid, share_at
 from pinjoint.systems.forms.properties import heading
-from pinjoint.systems.input.actions import ACTIONS, FORCE_METHOD, FORMS
+from pinjoint.systems.input.actions import ACTIONS, FORCE_METHOD, FORMS, METHODS
 
 PLACE = "place"  # the tools of mods stand at the end of its group, their other buttons in a group of their own
 
@@ -24,7 +24,7 @@ PLACE = "place"  # the tools of mods stand at the end of its group, their other 
 TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("toggle run", "restart", "step back", "step", "slower", "faster", "settle"),
     ("toggle statics", "next theory"),
-    ("next part", "release x", "release y", "release another"),
+    ("part before", "next part", "to the equations", "release x", "release y", "release another"),
     ("toggle diagrams of sets", "back"),
     ("undo", "redo", "copy", "paste", "duplicate", "delete"),
     (PLACE, "rod", "rigid", "hinge", "support", "force", "moment", "velocity"),
@@ -86,8 +86,9 @@ def menu_at(context: Context, pixel: Vector) -> Menu:
     """The menu of the selected elements, or of the canvas, opened at a pixel."""
     groups = _of_selection(context, pixel) if context.model.any_tagged(Selected) else _of_canvas(context)
     title = begun(heading(context.model, context.selected)) if context.model.any_tagged(Selected) else ""
-    if context.scene == FORCE_METHOD:
-        groups, title = [[("pick unknown", marked("release this"))], *_actions_of_toolbar(context)], ""
+    if context.scene in METHODS:
+        picks = [("pick unknown", marked("release this"))] if context.scene == FORCE_METHOD else []
+        groups, title = [picks, *_actions_of_toolbar(context)], ""
     entries = ([(entry, "") if isinstance(entry, str) else entry for entry in group] for group in groups)
     tools = (tuple(filter(None, (tool(context, *entry) for entry in group))) for group in entries)
     return Menu(title, tuple(group for group in tools if group), pixel, pointed=pixel)
@@ -149,7 +150,7 @@ def _of_canvas(context: Context) -> Groups:
             ("paste", marked("paste here")),
             "select all",
         ],
-        ["toggle run", "restart", "settle", "toggle statics", "next theory"],
+        ["toggle run", "restart", "settle", "toggle statics", "next theory", "displacement method"],
         [
             *("toggle diagrams", "toggle undeformed", "toggle free bodies", "toggle utilisation", "next shape"),
             *("toggle table", "toggle theory", "toggle energy", "toggle events"),

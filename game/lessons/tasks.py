@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from pinjoint.components.language import tr
-from pinjoint.components.wording import as_json, cut, remedy
-from pinjoint.mods.declared import fits
+from pinjoint.components.mistake import WrongValue
 from pinjoint.scripts.expectation import OVER_ALL
+from pinjoint.scripts.lines import Shape, check_shapes
 from pinjoint.scripts.script import Script, ScriptError
 
 Line = tuple[int, Mapping[str, Any]]  # of a script: its number, and what it says
@@ -69,36 +68,35 @@ class Task:
         return (of_all if word in OVER_ALL else self.asked[0]).strip().partition(".")[0]
 
 
-_Shapes = Mapping[str, tuple[Any, Any]]  # by key: the type of a value, and one that there may be
 _CONDITION = "rods.CD.axial_force < 100"
 _LINES = [{"press": "e"}]
 _CONDITIONS, _OBJECTS = str | list[str], list[dict[str, Any]]
-_KEYS: _Shapes = {
-    "task": (str, "Make CD carry less than 100 kN."),
-    "model": (str | dict[str, Any], "isostatic"),
-    UNTIL: (_CONDITIONS, _CONDITION),
-    SELECT: (str, "rods.*.axial_force = 0 ± 0.01"),
-    NUMBER: (str, "rods.CD.axial_force"),
-    CHOICES: (_OBJECTS, [{"text": "Tension", "if": "rods.CD.axial_force > 0"}]),
-    "after": (_OBJECTS, _LINES),
-    "then": (_OBJECTS, [{"press": "space"}]),
-    "within": (float, 0.01),
-    "hints": (list[str], ["Look at joint C."]),
-    "right": (str, "Joint C has no load, so CD carries nothing."),
-    "wrong": (_OBJECTS, [{"if": "statics.mechanisms > 0", "say": "That leaves a mechanism."}]),
-    "solution": (_OBJECTS, _LINES),
-    "score": (str, "sum rods.*.original_length"),
+_KEYS = {
+    "task": Shape(str, "Make CD carry less than 100 kN."),
+    "model": Shape(str | dict[str, Any], "isostatic"),
+    UNTIL: Shape(_CONDITIONS, _CONDITION, bool),
+    SELECT: Shape(str, "rods.*.axial_force = 0 ± 0.01"),
+    NUMBER: Shape(str, "rods.CD.axial_force"),
+    CHOICES: Shape(_OBJECTS, [{"text": "Tension", "if": "rods.CD.axial_force > 0"}]),
+    "after": Shape(_OBJECTS, _LINES),
+    "then": Shape(_OBJECTS, [{"press": "space"}]),
+    "within": Shape(float, 0.01, lambda share: 0.0 <= share < 1.0),
+    "hints": Shape(list[str], ["Look at joint C."]),
+    "right": Shape(str, "Joint C has no load, so CD carries nothing."),
+    "wrong": Shape(_OBJECTS, [{"if": "statics.mechanisms > 0", "say": "That leaves a mechanism."}]),
+    "solution": Shape(_OBJECTS, _LINES),
+    "score": Shape(str, "sum rods.*.original_length"),
 }
-_OF_CHOICE: _Shapes = {
-    "text": (str, "Tension"),
-    "if": (_CONDITIONS, _CONDITION),
-    "right": (bool, True),
-    "say": (str, "A compressed rod gets shorter."),
+_OF_CHOICE = {
+    "text": Shape(str, "Tension"),
+    "if": Shape(_CONDITIONS, _CONDITION, bool),
+    "right": Shape(bool, True),
+    "say": Shape(str, "A compressed rod gets shorter."),
 }
-_OF_WRONG: _Shapes = {
-    "if": (_CONDITIONS, _CONDITION),
-    "say": (str, "That leaves a mechanism."),
-    "lines": (_OBJECTS, _LINES),
+_OF_WRONG = {
+    "if": Shape(_CONDITIONS, _CONDITION, bool),
+    "say": Shape(str, "That leaves a mechanism."),
+    "lines": Shape(_OBJECTS, _LINES),
 }
 
 
@@ -174,21 +172,11 @@ class Lesson:
         lines = tuple((line, said) for said in entry.get("lines", ()))
         return Wrong(_listed(entry["if"]), entry["say"], lines)
 
-    def _check(self, line: int, entry: Mapping[str, Any], shapes: _Shapes) -> None:
-        for key, value in entry.items():
-            if key not in shapes:
-                said = tr("there is no key '{key}' here; {remedy}", key=cut(key), remedy=remedy(key, shapes))
-                self._fail(line, said)
-            kind, example = shapes[key]
-            empty = kind is _CONDITIONS and value == []
-            if empty or not fits(value, kind) or (key == "within" and not 0.0 <= value < 1.0):
-                said = tr(
-                    "{key} is {value}; write it like {form}.",
-                    key=key,
-                    value=as_json(value),
-                    form=json.dumps({key: example}),
-                )
-                self._fail(line, said)
+    def _check(self, line: int, entry: Mapping[str, Any], shapes: Mapping[str, Shape]) -> None:
+        try:
+            check_shapes(entry, shapes)
+        except WrongValue as error:
+            self._fail(line, str(error))
 
     def _fail(self, line: int, reason: str) -> NoReturn:
         raise self.script.error(line, reason)

@@ -17,7 +17,7 @@ from pinjoint.components.wording import cut, missing, quoted
 from pinjoint.paths import PathError, locate, locate_one, readable
 
 _OF_SESSION = ("scene", "time", "message")
-_SECTIONS = ("energy", "force_method", "count", "statics", "view")
+_SECTIONS = ("energy", "force_method", "displacement_method", "count", "statics", "view")
 _NUMBERS = ("force", "delta_real", "delta_base", "delta_unit")  # of the force method
 _SETS = ("real", "base", "superposed")
 
@@ -100,6 +100,8 @@ def read(session: Any, path: str) -> Any:
         return _one_of(session.energy.as_dict(), rest, "energies")
     if head == "force_method":
         return _of_force_method(session, rest)
+    if head == "displacement_method":
+        return _of_displacement_method(session, rest)
     if head == "statics":
         return _one_of(_STATICS, rest, "quantities of statics")(session)
     if head == "view":
@@ -210,3 +212,14 @@ def _of_force_method(session: Any, quantity: str) -> Any:
         return guide.exact[-1] if guide.exact is not None else None
     found = {name: getattr(guide.solution, name) for name in _NUMBERS}
     return float(_one_of(found, quantity, "quantities of the force method").ravel()[-1])
+
+
+def _of_displacement_method(session: Any, quantity: str) -> Any:
+    """A quantity of the displacement method: part, message, size, or an unknown by its name, such as B.x (m, rad)."""
+    guide = getattr(session.scenes.active, "guide", None)
+    if guide is None or session.scene != "displacement method":
+        raise NotFound("the displacement method is not open; press Ctrl+K in pause first.")
+    names = [unknown.name for unknown in guide.solution.unknowns]
+    found = dict(zip(names, guide.solution.displacement.tolist(), strict=True))
+    found |= {"part": guide.part, "message": session.scenes.active.message, "size": guide.size}
+    return _one_of(found, quantity, "quantities of the displacement method")

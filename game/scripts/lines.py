@@ -6,12 +6,13 @@ import json
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
 from pinjoint.components.mistake import WrongValue
-from pinjoint.components.wording import as_json, cut
+from pinjoint.components.wording import as_json, cut, remedy
+from pinjoint.mods.declared import fits
 from pinjoint.mods.mod import ModError
 from pinjoint.paths import apply_override
 from pinjoint.scripts.expectation import check
@@ -53,61 +54,64 @@ def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Se
     return failures + [Failure(number, tr("mods that work"), fault) for fault in EXTENSIONS.faults[known:]]
 
 
-_EXAMPLES: dict[str, Any] = {  # by key of a line: a value of the required shape
-    "press": "space",
-    "over": [1.0, 1.0],
-    "click": [1.0, 1.0],
-    "drag": [[0.0, 0.0], [1.0, 1.0]],
-    "button": "ctrl+click",
-    "type": "200000",
-    "box": "stiffness",
-    "set": "particles.B.force=120,-160",
-    "action": "undo",
-    "divide": ["AB", 4],
-    "run": 0.5,
-    "steps": 128,
-    "expect": "scene = pause",
-    "input": "click",
-    "pixel": [512.0, 300.0],
-    "resize": [1280.0, 800.0, 1.0],
-    "window": [1280.0, 800.0],
-    "say": "Press Space.",
-    "answer": "Tension",
-    "clipboard": "",
-    "at": 128,
-    "within": 0.5,
-}
-_SIZES = ("resize", "window")
+class Shape(NamedTuple):
+    """What may stand under a key. kind: its type. suits: whether a value of that type will do."""
+
+    kind: Any
+    example: Any
+    suits: Callable[[Any], bool] = lambda value: True
 
 
-def _check_line(entry: Mapping[str, Any]) -> None:
-    """Raise ValueError unless every key is known and every value has the shape of its example."""
+def check_shapes(entry: Mapping[str, Any], shapes: Mapping[str, Shape]) -> None:
+    """Raise WrongValue unless every key is known, and every value has its shape and is finite."""
     for key, value in entry.items():
-        if key not in _EXAMPLES:
-            raise WrongValue("there is no '{key}'; use one of {keys}.", key=cut(key), keys=", ".join(_EXAMPLES))
-        example = _EXAMPLES[key]
-        fits = (_is_like(value, example) or key == "answer") and not (key in _SIZES and min(value) <= 0)
-        if not fits and (key, value) != ("run", "rest"):
+        if key not in shapes:
+            near = remedy(key, shapes)
+            raise WrongValue("there is no key '{key}' here; {remedy}", key=cut(key), remedy=near)
+        kind, example, suits = shapes[key]
+        if not (fits(value, kind) and _is_finite(value) and suits(value)):
+            form = json.dumps({key: example})
             raise WrongValue(
-                "{key} is {value}; write it like {form}.",
-                key=key,
-                value=as_json(value),
-                form=json.dumps({key: example}),
+                "{key} is {value}; write it like {form}.", key=key, value=as_json(value), form=form
             )
 
 
-def _is_like(value: Any, example: Any) -> bool:
-    if isinstance(example, list):
-        alike = isinstance(value, list) and len(value) == len(example)
-        return alike and all(map(_is_like, value, example))
-    if isinstance(example, float):
-        return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-    return isinstance(value, type(example)) and not isinstance(value, bool)
+def _is_finite(value: Any) -> bool:
+    if isinstance(value, list | tuple):
+        return all(map(_is_finite, value))
+    return not isinstance(value, float) or math.isfinite(value)
+
+
+_POINT = tuple[float, float]
+_SHAPES = {
+    "press": Shape(str, "space"),
+    "over": Shape(_POINT, [1.0, 1.0]),
+    "click": Shape(_POINT, [1.0, 1.0]),
+    "drag": Shape(tuple[_POINT, _POINT], [[0.0, 0.0], [1.0, 1.0]]),
+    "button": Shape(str, "ctrl+click"),
+    "type": Shape(str, "200000"),
+    "box": Shape(str, "stiffness"),
+    "set": Shape(str, "particles.B.force=120,-160"),
+    "action": Shape(str, "undo"),
+    "divide": Shape(tuple[str, int], ["AB", 4]),
+    "run": Shape(float | Literal["rest"], 0.5),
+    "steps": Shape(int, 128),
+    "expect": Shape(str, "scene = pause"),
+    "input": Shape(str, "click"),
+    "pixel": Shape(_POINT, [512.0, 300.0]),
+    "resize": Shape(tuple[float, float, float], [1280.0, 800.0, 1.0], lambda size: min(size) > 0.0),
+    "window": Shape(_POINT, [1280.0, 800.0], lambda size: min(size) > 0.0),
+    "say": Shape(str, "Press Space."),
+    "answer": Shape(Any, "Tension"),
+    "clipboard": Shape(str, ""),
+    "at": Shape(int, 128),
+    "within": Shape(float, 0.5),
+}
 
 
 def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     """Do what one line says; yields (expected, got) of a failed expectation. Raises ValueError."""
-    _check_line(entry)
+    check_shapes(entry, _SHAPES)
     rest = dict(entry)
     if "window" in rest:
         width, height = rest.pop("window")

@@ -26,7 +26,7 @@ class Hover(System):
     reads = ("document", "view")
     writes = ("tags",)
     unneeded = marked("the model has nothing to point at")
-    scenes = ("simulation", "pause", "statics", "properties", "force method")
+    scenes = ("simulation", "pause", "statics", "properties", "force method", "displacement method")
 
     def __init__(self, beside: Callable[[Model, View, Vector], Handle | None] = lambda *where: None) -> None:
         self._beside = beside

@@ -13,12 +13,13 @@ from pinjoint.components.settings import HUBS
 from pinjoint.components.wording import missing
 
 SIMULATION = "simulation"
-PROPERTIES, SAVE, LOAD, FORCE_METHOD = "properties", "save", "load", "force method"
+PROPERTIES, SAVE, LOAD = "properties", "save", "load"
+METHODS = FORCE_METHOD, DISPLACEMENT_METHOD = "force method", "displacement method"
 LIVE = (SIMULATION, *HUBS)
 FORMS = (PROPERTIES, SAVE, LOAD)
-EVERY = (*LIVE, *FORMS, FORCE_METHOD)
-IN_LESSONS = (*LIVE, PROPERTIES, FORCE_METHOD)
-IN_PICTURES = (*LIVE, FORCE_METHOD)
+EVERY = (*LIVE, *FORMS, *METHODS)
+IN_LESSONS = (*LIVE, PROPERTIES, *METHODS)
+IN_PICTURES = (*LIVE, *METHODS)
 MENU = "menu"  # no scene: the keys while a menu is open
 TABLE = "table"  # no scene: the keys while the pointer is over a table of results
 
@@ -32,7 +33,7 @@ UNBOUND = ("insert", "caps lock", "print screen", "menu", *(f"f{number}" for num
 
 # In the order in which the help lists them.
 PURPOSES = (
-    *(marked("Time"), marked("Draw"), marked("Select and edit"), marked("Results"), marked("Force method")),
+    *(marked("Time"), marked("Draw"), marked("Select and edit"), marked("Results"), marked("Methods")),
     *(marked("Boxes"), marked("View"), marked("Lessons"), marked("Files"), marked("Menu"), marked("More")),
 )
 

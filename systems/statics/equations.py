@@ -426,6 +426,12 @@ class Structure:
         """The tangent at the original positions, without axial forces and with taut cables."""
         return self.tangent(self.unmoved, np.zeros(len(self.ends), dtype=bool), geometric=False)
 
+    @property
+    def stiffnesses(self) -> Array:
+        """k of every rod at the original positions, along the axes of supports, (rods, 2 × width, 2 × width)."""
+        rigid = np.zeros(len(self.ends), dtype=bool)
+        return self._turned(self.tangents(self.unmoved, rigid, geometric=False))
+
     def respond(self, displacement: Array, plastic_strain: Array, share: float = 0.0) -> Response:
         """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p.
 
@@ -605,7 +611,22 @@ class Structure:
     # --- tangent -------------------------------------------------------------------------------------
 
     def tangent(self, response: Response, soft: Flags, *, geometric: bool = True) -> Matrix:
-        """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of soft rods) + Σ N/L (1 − a aᵀ), and what bending adds."""
+        """dF/du over the unknowns, the sum of what every rod and every spring adds."""
+        matrix = self.matrix(self.tangents(response, soft, geometric=geometric))
+        if not self.is_sprung:
+            return matrix
+        springs = self.unknown_springs
+        if isinstance(matrix, np.ndarray):
+            return matrix + np.diag(springs)
+        from scipy.sparse import csc_matrix, diags
+
+        return csc_matrix(matrix + diags(springs))
+
+    def tangents(self, response: Response, soft: Flags, *, geometric: bool) -> Array:
+        """dF/du of every rod over the coordinates of both ends, (rods, 2, width, 2, width).
+
+        EA/L₀ a aᵀ (not of soft rods) + N/L (1 − a aᵀ), and what bending adds.
+        """
         along = np.where(soft, 0.0, self.stiffness / self.rest_length)
         across = np.zeros_like(along)
         geometric = geometric and not self.first_order
@@ -624,22 +645,16 @@ class Structure:
                 response.bent, along, response.axial_force, a, response.length, geometric
             ).reshape(-1, 2, 3, 2, 3)
             parts[:, :, :2, :, :2] += bars
-        matrix = self.matrix(parts)
-        if not self.is_sprung:
-            return matrix
-        springs = self.unknown_springs
-        if isinstance(matrix, np.ndarray):
-            return matrix + np.diag(springs)
-        from scipy.sparse import csc_matrix, diags
-
-        return csc_matrix(matrix + diags(springs))
+        return parts
 
     def matrix(self, parts: Array) -> Matrix:
         """Sum of the rods' matrices (rods, …) of the coordinates of both ends, along the axes of supports."""
-        if self.angle.any():
-            parts = self._by_supports(parts.reshape(len(self.ends), 2 * self.width, -1), self.ends)
-            parts = self._by_supports(parts.swapaxes(1, 2), self.ends)
-        return self.assembly.matrix(parts.ravel())
+        return self.assembly.matrix(self._turned(parts).ravel())
+
+    def _turned(self, parts: Array) -> Array:
+        """Matrices of rods, (rods, 2 × width, 2 × width), of the coordinates along the axes of supports."""
+        parts = self._by_supports(parts.reshape(len(self.ends), 2 * self.width, -1), self.ends)
+        return self._by_supports(parts.swapaxes(1, 2), self.ends)
 
     def _by_supports(self, by_ends: Array, ends: Rows) -> Array:
         """Of rows (k, …, coordinates of two particles) those by their coordinates along the axes of supports."""

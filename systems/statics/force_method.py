@@ -18,7 +18,7 @@ force, by warmth and lack of fit; c displacements of supports, −R/k of elastic
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,64 +28,13 @@ from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.particle import in_support_axes, spring_stiffness, supported
 from pinjoint.components.theory import FIRST_ORDER
-from pinjoint.systems.statics.equations import Array, Rows, Structure, largest, normalised
+from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion
 from pinjoint.systems.statics.external import External
+from pinjoint.systems.statics.superposition import ROUNDING, SetState, Superposition
 from pinjoint.systems.statics.theory import FirstOrder
-from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown
-
-_ROUNDING = (
-    1e-12  # of the largest force, or of the geometric mean of their diagonal: smaller flexibilities are 0
-)
-
-
-@dataclass(frozen=True)
-class SetState:
-    """A set by first-order theory: displacement (n, 2) in m, rotation (n,) in rad, axial forces (rods,) in kN.
-
-    end_moment: counter-clockwise on the ends of the rods, kN·m, (rods, 2). reaction: kN and, of clamps, kN·m, (n, 3). Of a
-    unit force they include that force itself, in the cut bar or at the released support.
-    """
-
-    displacement: Array
-    rotation: Array
-    axial_force: Array
-    end_moment: Array
-    reaction: Array
-
-    @property
-    def bending_moment(self) -> Array:
-        """At the ends of the rods, positive where the side on their right is in tension, (rods, 2)."""
-        moment: Array = self.end_moment * np.array([-1.0, 1.0])
-        return moment
-
-    def without_rounding(self, length: Array) -> SetState:
-        """The same, in which what is nothing beside the largest force is 0; length: of the rods, as levers (rods,)."""
-        lever = length.max(initial=0.0)
-        moments = self.end_moment / length[:, None]
-        forces = (self.axial_force, self.reaction[:, :2], moments, self.reaction[:, 2:] / max(lever, 1e-300))
-        least = _ROUNDING * max(map(largest, forces))
-
-        def kept(values: Array, least: Array | float) -> Array:
-            return np.where(np.abs(values) > least, values, 0.0)
-
-        return replace(
-            self,
-            axial_force=kept(self.axial_force, least),
-            end_moment=kept(self.end_moment, least * length[:, None]),
-            reaction=kept(self.reaction, least * np.array([1.0, 1.0, lever])),
-        )
-
-    @classmethod
-    def superposed(cls, states: Sequence[SetState], amounts: Sequence[float]) -> SetState:
-        """The sum of so much of each of some states."""
-        return cls(
-            *(
-                sum(amount * getattr(state, part.name) for state, amount in zip(states, amounts, strict=True))
-                for part in fields(cls)
-            )
-        )
+from pinjoint.systems.statics.unknowns import MethodError, Unknown
 
 
 @dataclass(frozen=True)
@@ -139,11 +88,11 @@ class Work:
         parts = [part for terms in every for part in (terms.of_load, terms.of_free)]
         total: Array = np.sum([part.sum(axis=1) for part in parts], axis=0)
         size = np.sum([np.abs(part).sum(axis=1) for part in parts], axis=0)
-        return np.where(np.abs(total) > _ROUNDING * size, total, 0.0)
+        return np.where(np.abs(total) > ROUNDING * size, total, 0.0)
 
 
 @dataclass(frozen=True)
-class Solution:
+class Solution(Superposition):
     """The force method for m unknowns at once.
 
     In the textbook's terms: gap δ₀ (m,), by how much the released structure opens or closes under the load where an unknown
@@ -157,10 +106,6 @@ class Solution:
     real, base: sets 1 and 2; units: set 3 of each unknown, under its unit force. work: what gap and flexibility are sums of.
     """
 
-    unknowns: tuple[Unknown, ...]
-    real: SetState
-    base: SetState
-    units: tuple[SetState, ...]
     work: Work
     gap: Array
     flexibility: Array
@@ -171,30 +116,27 @@ class Solution:
     delta_unit: Array
 
     @property
-    def superposed(self) -> SetState:
-        """Set 2 + Σ X × set 3, which equals set 1."""
-        return SetState.superposed((self.base, *self.units), (1.0, *self.force.tolist()))
+    def amounts(self) -> Array:
+        """X."""
+        return self.force
 
 
 def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
-    """δ₀ + Σ δ X = c, which for one unknown is Δ_real = Δ₀ + Δ₁ p. Raises ForceMethodError.
+    """δ₀ + Σ δ X = c, which for one unknown is Δ_real = Δ₀ + Δ₁ p. Raises MethodError.
 
     Bar: Δ is the change of distance between its ends (apart +), the unit pair pulls them together, X > 0 is tension. The
     gap is that in the bar, which is cut: its own elongation, by which it closes, less Δ. Support: Δ and X along +x or +y or
     counter-clockwise, X acts on the structure; a spring there is cut, and the gap is that in it. End of a rod: X is the
     bending moment, Δ = δ the angle by which the pair of unit moments turns joint and rod against each other.
     """
-    problem = incomputable(model)
-    if problem:
-        raise ForceMethodError(problem)
     for unknown in unknowns:
         unknown.check_suits(model)
+    whole, real = real_structure(model)
     try:
-        whole = _Released(model, ())
-        real, released = whole.under_load(), _Released(model, unknowns) if unknowns else whole
+        released = Released(model, unknowns) if unknowns else whole
         base, units = released.under_load(), tuple(map(released.under, unknowns))
     except NoEquilibrium as reason:
-        raise ForceMethodError(str(reason)) from None
+        raise MethodError(str(reason)) from None
     work = _work(model, unknowns, base, units)
     # Of bars: L₀/EA, ΔL, and Δ; of springs −1/k and Δ; of rigid supports c.
     own, free, stretched, prescribed = np.zeros((4, len(unknowns)))
@@ -211,7 +153,7 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     flexibility = work.axial.flexibility + work.bending.flexibility + work.supports.flexibility
     force: Array = np.linalg.solve(flexibility, prescribed - gap).astype(np.float64)
     size = np.sqrt(np.abs(np.diag(flexibility)))
-    flexibility = np.where(np.abs(flexibility) > _ROUNDING * np.outer(size, size), flexibility, 0.0)
+    flexibility = np.where(np.abs(flexibility) > ROUNDING * np.outer(size, size), flexibility, 0.0)
     sign = np.array([-1.0 if unknown.of_bar else 1.0 for unknown in unknowns])
     return Solution(
         tuple(unknowns),
@@ -229,10 +171,10 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     )
 
 
-class _Released:
+class Released:
     """A model without some unknowns, but with all masses, loads and moved supports, by first-order theory.
 
-    Raises ForceMethodError, with the motion, if a mechanism is left.
+    Raises MethodError, with the motion, if a mechanism is left.
     """
 
     def __init__(self, model: Model, unknowns: Sequence[Unknown]) -> None:
@@ -250,8 +192,8 @@ class _Released:
             inextensible=whole.inextensible[~bars[whole.inextensible]],
             bending=bending,
         )
-        self._theory = FirstOrder(model, released, with_all)
-        motions = released.fields(self._theory.mechanisms)
+        self.theory = FirstOrder(model, released, with_all)
+        motions = released.fields(self.theory.mechanisms)
         if not len(motions):
             return
         moves = describe_motion(model, motions)
@@ -267,7 +209,7 @@ class _Released:
                 "The structure is a mechanism already ({moves} can move); support or brace it first.",
                 moves=moves,
             )
-        raise ForceMethodError(message, normalised(motions[0]))
+        raise MethodError(message, normalised(motions[0]))
 
     def under_load(self) -> SetState:
         """The state under the real load, lack of fit, warmth and moved supports."""
@@ -287,17 +229,23 @@ class _Released:
 
     def _state(self, load: Array, share: float, moment: Array) -> SetState:
         """The state under a load (n, …), a share of what else acts, and moments on the ends of rods (rods, 2)."""
-        structure, rods, model = self._theory.structure, self._theory.structure.grown(share), self._model
+        structure, rods, model = self.theory.structure, self.theory.structure.grown(share), self._model
         if moment.any():
             load = load - structure.held(moment)
         place = structure.field(model.particles.displacement, model.particles.rotation)
         supports, strain = share * structure.of_supports(place), share * model.rods.plastic_strain
-        moved, response = self._theory.equilibrium(load, supports, strain, share, rods)
-        reaction = np.zeros((len(moved), 3))
-        reaction[:, : structure.width] = rods.reactions(response, load)
-        end_moment = structure.end_moments(response) + moment
-        state = SetState(moved[:, :2], structure.rotation(moved), response.axial_force, end_moment, reaction)
-        return state.without_rounding(model.rods.rest_length)
+        moved, response = self.theory.equilibrium(load, supports, strain, share, rods)
+        return SetState.of(model, rods, load, moved, response, moment)
+
+
+def real_structure(model: Model) -> tuple[Released, SetState]:
+    """The structure as it is, and its state under the load. Raises MethodError."""
+    if problem := incomputable(model):
+        raise MethodError(problem)
+    try:
+        return (whole := Released(model, ())), whole.under_load()
+    except NoEquilibrium as reason:
+        raise MethodError(str(reason)) from None
 
 
 def bulge(model: Model) -> Array:

@@ -63,10 +63,10 @@ class FirstOrder:
         supports: displacements of constrained directions, else 0. share: of the distributed forces. rods: the structure, or
         one of another lack of fit.
         """
-        held, firm = _elastic(rods, supports, plastic_strain, share), self.structure.inextensible
+        held, firm = elastic(rods, supports, plastic_strain, share), self.structure.inextensible
         longer = rods.rest_length * plastic_strain - held.elongation
         by, forces = self._answer(load - rods.internal(held), longer[firm])
-        found = _elastic(rods, supports + by, plastic_strain, share)
+        found = elastic(rods, supports + by, plastic_strain, share)
         if len(firm):
             axial, strain, elongation = (
                 part.copy() for part in (found.axial_force, found.strain, found.elongation)
@@ -154,7 +154,7 @@ class FirstOrder:
         return solution
 
 
-def _elastic(structure: Structure, displacement: Array, plastic_strain: Array, share: float) -> Response:
+def elastic(structure: Structure, displacement: Array, plastic_strain: Array, share: float) -> Response:
     """How rods respond of which none yields."""
     found = structure.respond(displacement, plastic_strain, share)
     return replace(found, axial_force=found.elastic_force, plastic_strain=plastic_strain)

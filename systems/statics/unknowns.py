@@ -24,7 +24,7 @@ _FIRST = 1e-3  # of bending moments, which are released before bars
 _RANK = 1e-9  # relative size below which a pivot is zero
 
 
-class ForceMethodError(Mistake, ValueError):
+class MethodError(Mistake, ValueError):
     """A static unknown that cannot be used; the message names it, the reason and the remedy.
 
     motion: of the mechanism that its release would leave, (n, 2 or 3), the largest 1; None for other reasons.
@@ -88,7 +88,7 @@ class Unknown:
     def named(cls, model: Model, name: str) -> Unknown:
         """The unknown called "AC" (a rod), "AB.start" (its bending moment there), "A.y" or "A.rotation" (a support).
 
-        Raises ForceMethodError.
+        Raises MethodError.
         """
         if name in model.rods:
             return cls(model.rods[name])
@@ -98,29 +98,29 @@ class Unknown:
         if place in model.particles and what in AXES:
             return cls(model.particles[place], AXES.index(what))._checked(model)
         if name in model.particles:
-            raise ForceMethodError(
+            raise MethodError(
                 "'{name}' is a particle; say which of its supports, such as {name}.x or {name}.y.", name=name
             )
         held = np.argwhere(supported(model) & [True, True, bends(model)]).tolist()
         supports = [cls(model.particles[row], axis) for row, axis in held]
         choices = [*model.rods.names, *(unknown.name for unknown in (*supports, *_of_ends(model)))]
-        raise ForceMethodError(missing(marked("rods and supports"), name, choices))
+        raise MethodError(missing(marked("rods and supports"), name, choices))
 
     def _checked(self, model: Model) -> Unknown:
-        """The same. Raises ForceMethodError where there is no such force."""
+        """The same. Raises MethodError where there is no such force."""
         row, axis, place = self.element.row, self.axis, self.element.name
         if self.of_end and not model.rods.turning_shares[row, axis]:
-            raise ForceMethodError(
+            raise MethodError(
                 "There is no moment to release at {name}: {rod} is hinged there, or does not bend.",
                 name=self.name,
                 rod=place,
             )
         if axis == 2 and not supported(model)[row, axis]:
-            raise ForceMethodError(
+            raise MethodError(
                 "{particle} is not clamped, so there is no moment to release there.", particle=place
             )
         if self.of_support and axis in (0, 1) and not supported(model)[row, axis]:
-            raise ForceMethodError(
+            raise MethodError(
                 "{particle} is free along {axis}, so there is no reaction to release there.",
                 particle=place,
                 axis=AXES[axis],
@@ -128,22 +128,22 @@ class Unknown:
         return self
 
     def check_suits(self, model: Model) -> None:
-        """Raise ForceMethodError where no other part of the structure shares the force."""
+        """Raise MethodError where no other part of the structure shares the force."""
         row = self.element.row
         if self.of_bar and (model.rods.turning_shares[row] > 0.0).any():
-            raise ForceMethodError(
+            raise MethodError(
                 "{rod} bends. Release the moment at one of its ends instead: {rod}.start or {rod}.end.",
                 rod=self.name,
             )
         if self.of_support and not (model.rods.between == row).any():
-            raise ForceMethodError(
+            raise MethodError(
                 "{name} is not a static unknown: no rod ends at {particle}, so its reaction only balances what acts"
                 " on it there. Choose a rod, or a support of the structure.",
                 name=self.name,
                 particle=self.element.name,
             )
         if self.axis == 2 and self.of_support and not rigid_joints(model)[row]:
-            raise ForceMethodError(
+            raise MethodError(
                 "{name} is not a static unknown: no rod that bends is joined rigidly at {particle}.",
                 name=self.name,
                 particle=self.element.name,

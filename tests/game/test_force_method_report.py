@@ -10,9 +10,9 @@ from pinjoint.commands.command_line import main
 from pinjoint.components.language import spoken
 from pinjoint.components.view import TEXTBOOK, THESIS
 from pinjoint.documents import models
-from pinjoint.force_method import words
-from pinjoint.force_method.report import contents, report
-from pinjoint.force_method.tables import Tables
+from pinjoint.methods import words
+from pinjoint.methods.report import contents, report
+from pinjoint.methods.tables import ForceTables
 from pinjoint.systems.render.backends.paper import LAYOUTS, WIDTH, Layout
 from pinjoint.systems.statics.force_method import solve
 from pinjoint.systems.statics.theory import linear
@@ -25,10 +25,10 @@ from tests.systems.render.frame_models import CLAMPED, frame
 OWN = {"panels": panels, "propped": propped, "two_span": two_span}
 
 
-def solved(name: str, *released: str) -> Tables:
+def solved(name: str, *released: str) -> ForceTables:
     model = OWN[name]() if name in OWN else models.load(name)
     unknowns = [Unknown.named(model, one) for one in released] or redundants(model)
-    return Tables(model, solve(model, unknowns))
+    return ForceTables(model, solve(model, unknowns))
 
 
 def written_in(parts: Sequence[Any]) -> Iterator[Any]:
@@ -53,7 +53,7 @@ def number(text: str) -> tuple[float, float]:
     return float(plain), 0.5 * 10.0**-decimals if plain != "0" else 1e-9
 
 
-def tables_of(found: Tables, head: str) -> list[list[str]]:
+def tables_of(found: ForceTables, head: str) -> list[list[str]]:
     """The rows below the head of all tables whose second column has this head."""
     rows = [part for part in written_in(contents(found, TEXTBOOK)) if isinstance(part, list)]
     return [row for table in rows if table[0][1].split("\n")[0] == head for row in table[1:]]
@@ -129,7 +129,7 @@ def test_the_same_solution_gives_the_same_file() -> None:
 
 def test_large_structures_take_several_pages_and_say_what_is_left_out() -> None:
     model = lattice(300)
-    found = Tables(model, solve(model, redundants(model)[:1]))
+    found = ForceTables(model, solve(model, redundants(model)[:1]))
     said = [part for part in written_in(contents(found, TEXTBOOK)) if isinstance(part, str)]
     left_out = model.rods.count - 120
     assert f"{left_out} more rows are not printed; sums are of all." in said
@@ -176,7 +176,7 @@ def rows_in(parts: Sequence[Any]) -> Iterator[Any]:
             yield part
 
 
-def texts_of_figures(found: Tables) -> list[list[str]]:
+def texts_of_figures(found: ForceTables) -> list[list[str]]:
     """The texts in each figure of a report, in order."""
     return [
         part.picture.texts
@@ -225,7 +225,7 @@ def test_what_is_rounding_is_told_as_nothing(released: list[str]) -> None:
     particles = {"A": (0.0, 0.0, CLAMPED), "B": (0.0, 4.0, {}), "C": (6.0, 4.0, {}), "D": (6.0, 0.0, CLAMPED)}
     loads = [{"name": f"at {one}", "on": one, "force": [10.0, 0.0]} for one in "BC"]
     model = models.load(frame(particles, {"A B": {}, "B C": {}, "C D": {}}, loads=loads))
-    found = Tables(model, solve(model, [Unknown.named(model, name) for name in released]))
+    found = ForceTables(model, solve(model, [Unknown.named(model, name) for name in released]))
     said = [str(part) for part in written_in(contents(found, TEXTBOOK))]
     said += [*words.equations(found), *words.in_thesis(found.solution)]
     assert not [line for line in said if re.search("10⁻[¹²³][⁰-⁹]", line)]

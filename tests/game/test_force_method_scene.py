@@ -10,10 +10,10 @@ from pinjoint.components.camera import Camera
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.documents import models
-from pinjoint.editor.scenes.force_method import ForceMethod
-from pinjoint.force_method import PARTS, words
-from pinjoint.force_method.copies import elastic_copy
-from pinjoint.force_method.guide import Guide
+from pinjoint.editor.scenes.methods import ForceMethod
+from pinjoint.methods import PARTS, words
+from pinjoint.methods.copies import elastic_copy
+from pinjoint.methods.guide import ForceGuide as Guide
 from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.model.sheet import measure
 from pinjoint.systems.render.picture import compose, compose_all

@@ -584,7 +584,7 @@ HEADER = '{"format": "pinjoint session", "version": 1, "title": "Mine"}'
         ('{"task": "x", "model": "nothing", "until": "time > 1", "right": "", "solution": []}', "line 2: "),
         (
             '{"task": "x", "until": "time > 1", "right": "", "solution": [{"pres": "e"}]}',
-            "line 2: there is no 'pres'",
+            "line 2: there is no key 'pres' here",
         ),
     ],
 )

@@ -13,7 +13,7 @@ from pinjoint.systems.render.theme import load_theme
 from tests.reference import bits
 from tests.systems.edit.hand import FRAME, run_frames
 
-SCENES = ["pause", "simulation", "statics", "properties", "save", "load", "force method"]
+SCENES = ["pause", "simulation", "statics", "properties", "save", "load", "force method", "displacement method"]
 HUBS = ("pause", "statics")
 
 
@@ -33,7 +33,7 @@ def go(session: Session, scene: str) -> None:
 # --- the state machine -----------------------------------------------------------------------------------
 
 
-def test_there_are_seven_and_pause_is_the_first(session: Session) -> None:
+def test_there_are_eight_and_pause_is_the_first(session: Session) -> None:
     assert [scene.name for scene in all_scenes()] == SCENES
     assert session.scene == "pause"
 
@@ -41,9 +41,12 @@ def test_there_are_seven_and_pause_is_the_first(session: Session) -> None:
 @pytest.mark.parametrize("start", SCENES)
 @pytest.mark.parametrize("target", SCENES)
 def test_pause_and_statics_are_hubs(session: Session, start: str, target: str) -> None:
-    """From a hub to any other, from any other to a hub, and nothing else; a run ends in pause."""
+    """From a hub to any other, from any other to a hub, between methods, and nothing else; a run ends in pause."""
     go(session, start)
-    if start != target and (start in HUBS or target == "pause" or (target in HUBS and start != "simulation")):
+    beside = start.endswith("method") and target.endswith("method")
+    if start != target and (
+        beside or start in HUBS or target == "pause" or (target in HUBS and start != "simulation")
+    ):
         session.scenes.request(target)
         assert session.scene == start  # until the one point of the frame where it happens
         session.frame(0.0)

@@ -122,7 +122,7 @@ def test_wrong_headers_are_explained(tmp_path: Path, further: str, words: str) -
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        ('{"pres": "k"}', r"line 2: there is no 'pres'"),
+        ('{"pres": "k"}', r"line 2: there is no key 'pres' here; did you mean 'press'"),
         ('{"press": "k", "run": 1}', "line 2: a line can do one thing"),
         ('{"expect": "rods.AB"}', "is not an expectation"),
         ('{"expect": "rods.AX.strain = 0"}', "choose one of AB, BC, CA"),
@@ -138,6 +138,7 @@ def test_wrong_headers_are_explained(tmp_path: Path, further: str, words: str) -
         ('{"run": "dawn"}', 'run is "dawn"; write it like {"run": 0.5}'),
         ('{"run": true}', "run is true; write it like"),
         ('{"run": 1e999}', "run is Infinity; write it like"),
+        ('{"run": NaN}', "run is NaN; write it like"),
         ('{"steps": 1.5}', "steps is 1.5; write it like"),
         ('{"resize": [0, 100, 1]}', r"resize is \[0, 100, 1\]; write it like"),
         ("[1]", "line 2: write an object"),

@@ -16,7 +16,7 @@ from pinjoint.systems.statics.force_method import solve
 from pinjoint.systems.statics.path import Curve, Goal
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.theory import linear
-from pinjoint.systems.statics.unknowns import ForceMethodError
+from pinjoint.systems.statics.unknowns import MethodError
 from tests.reference import closed_forms, statics
 from tests.reference.elements import Model as Document
 from tests.reference.models import model, particle, random_truss, rod
@@ -281,7 +281,7 @@ def test_linear_theories_refuse_cables_by_name() -> None:
     opened = models.load(braced())
     with pytest.raises(NoEquilibrium, match="Rods AC and BD act in tension only"):
         linear(opened)
-    with pytest.raises(ForceMethodError, match="Rods AC and BD act in tension only"):
+    with pytest.raises(MethodError, match="Rods AC and BD act in tension only"):
         solve(opened, ())
 
 

@@ -12,10 +12,10 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.documents import models
-from pinjoint.force_method.copies import exact_forces
+from pinjoint.methods.copies import exact_forces
 from pinjoint.systems.statics.force_method import solve
 from pinjoint.systems.statics.theory import linear
-from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, redundants
+from pinjoint.systems.statics.unknowns import MethodError, Unknown, redundants
 from tests.reference.models import model, panel_truss, particle, rod
 from tests.reference.statics import direct_stiffness
 
@@ -87,7 +87,7 @@ def _complete_graph(random: np.random.Generator, count: int) -> Model:
 
 def test_an_unknown_whose_release_makes_a_mechanism_is_refused_with_the_motion() -> None:
     model = models.load("isostatic")
-    with pytest.raises(ForceMethodError, match=r"Without AB the structure is a mechanism: .*B .* can move"):
+    with pytest.raises(MethodError, match=r"Without AB the structure is a mechanism: .*B .* can move"):
         solve(model, [Unknown.named(model, "AB")])
 
 
@@ -100,7 +100,7 @@ def test_an_unknown_whose_release_makes_a_mechanism_is_refused_with_the_motion()
     ],
 )
 def test_unknowns_that_do_not_exist_are_explained(name: str, words: str) -> None:
-    with pytest.raises(ForceMethodError, match=words):
+    with pytest.raises(MethodError, match=words):
         Unknown.named(models.load("hyperstatic"), name)
 
 

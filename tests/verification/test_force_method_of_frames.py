@@ -14,9 +14,10 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import in_support_axes
 from pinjoint.documents import models
 from pinjoint.documents.models import parse
-from pinjoint.systems.statics.force_method import SetState, Solution, solve
+from pinjoint.systems.statics.force_method import Solution, solve
+from pinjoint.systems.statics.superposition import SetState
 from pinjoint.systems.statics.theory import Indeterminacy, linear
-from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, redundants
+from pinjoint.systems.statics.unknowns import MethodError, Unknown, redundants
 from tests.reference.models import model, random_truss
 from tests.verification.test_frame_theory import EI, beam, free, held, random_frame
 
@@ -182,7 +183,7 @@ def test_random_trusses_with_warm_and_misfitting_rods(seed: int) -> None:
 )
 def test_unknowns_that_are_none_are_explained(name: str, words: str) -> None:
     made = propped()
-    with pytest.raises(ForceMethodError, match=words):
+    with pytest.raises(MethodError, match=words):
         solve(made, [Unknown.named(made, name)])
 
 

@@ -16,7 +16,7 @@ from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import StaticState
 from pinjoint.systems.statics.theory import Indeterminacy, linear, mechanisms, self_stress
-from pinjoint.systems.statics.unknowns import ForceMethodError
+from pinjoint.systems.statics.unknowns import MethodError
 from tests.reference import frame_theory
 from tests.reference.models import model, rod
 
@@ -261,7 +261,7 @@ def test_influence_lines_are_what_a_moved_load_does(hinged: list[bool]) -> None:
                 expected = answer.axial_force[made.rods[name].row]
             assert lines[name]["of"][at][axis] == pytest.approx(expected, rel=1e-9, abs=1e-11)
     if hinged[0]:
-        with pytest.raises(ForceMethodError, match=r"BC\.start is hinged, so there is no bending moment"):
+        with pytest.raises(MethodError, match=r"BC\.start is hinged, so there is no bending moment"):
             influence(made, ["BC.start"])
 
 

@@ -163,11 +163,8 @@ def test_self_stressed_rods_are_refused_by_name() -> None:
 
 
 def test_yielding_beside_inextensible_rods_is_refused_and_cables_are_none() -> None:
-    places = (
-        ("A", 0, 0, {"fixed": [True, True]}),
-        ("B", 1, 0, {"force": [50.0, -50.0]}),
-        ("C", 0, 1, {"fixed": [True, True]}),
-    )
+    held = {"fixed": [True, True]}
+    places = ("A", 0, 0, held), ("B", 1, 0, {"force": [50.0, -50.0]}), ("C", 0, 1, held)
     rods = [rod("A", "B", inextensible=True), rod("B", "C", tensile_strength=20.0)]
     made = parse(model([particle(name, x, y, **facts) for name, x, y, facts in places], rods))
     found = settle(made, theory="first-order").final

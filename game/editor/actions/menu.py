@@ -13,7 +13,7 @@ from pinjoint.components.rod import Rod
 from pinjoint.components.settings import HUBS
 from pinjoint.components.tags import Selected
 from pinjoint.editor.context import Context, tell
-from pinjoint.editor.scenes.force_method import ForceMethod
+from pinjoint.editor.scenes.methods import ForceMethod
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.dividing import DIVISIONS, divide, divide_at
 from pinjoint.systems.edit.picking import pick_rod
@@ -21,7 +21,7 @@ from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import share_at, weigh_along
 from pinjoint.systems.edit.supports import SPRING, SUPPORTS, Held, held, is_elastic, put_on_springs, support
 from pinjoint.systems.forms.properties import heading
-from pinjoint.systems.input.actions import ACTIONS, MENU, actions_of
+from pinjoint.systems.input.actions import ACTIONS, FORCE_METHOD, MENU, actions_of
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.menu import entry_beside, pointed_at
 
@@ -185,9 +185,9 @@ for _parts, _title in DIVISIONS.items():
 @offer("release", "", "release it in the force method", HUBS)
 def _release(context: Context, pixel: Vector) -> None:
     """Begin the force method with the selected rod as the static unknown."""
-    rods, scene = context.model.tagged(Selected, Rod), context.scenes["force method"]
+    rods, scene = context.model.tagged(Selected, Rod), context.scenes[FORCE_METHOD]
     if len(rods) != 1:
         raise Refusal("Select one rod only: the one that is to be released.")
     assert isinstance(scene, ForceMethod)
     scene.first_unknown = rods[0].name
-    context.scenes.request("force method")
+    context.scenes.request(FORCE_METHOD)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from operator import attrgetter
 
 from pinjoint.components.bent import AXIAL, is_frame
@@ -20,7 +21,7 @@ from pinjoint.editor.actions.view import toggle
 from pinjoint.editor.context import Context
 from pinjoint.editor.sliders import add_slider
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.input.actions import SIMULATION, TABLE, actions_of
+from pinjoint.systems.input.actions import DISPLACEMENT_METHOD, FORCE_METHOD, SIMULATION, TABLE, actions_of
 from pinjoint.systems.render.model.diagrams import NAMES
 
 action = actions_of("Results", while_drawing=True)
@@ -190,8 +191,17 @@ def _usual(model: Model, elements: Sequence[Handle]) -> tuple[Sequence[Handle], 
     return elements, field, "x" if abs(x) > abs(y) else "y"
 
 
-@action("force method", "k", "force method", HUBS, while_drawing=False, enabled=attrgetter("model.rods.count"))
-def _force_method(context: Context, pixel: Vector) -> None:
+def _method(name: str, context: Context, pixel: Vector) -> None:
+    """Begin a method, from the other one too."""
     if context.model.particles.count == 0:
         raise Refusal("There is nothing to solve yet; draw a structure with P and L, or open one with D.")
-    context.scenes.request("force method")
+    context.scenes.request(name)
+
+
+_solved = {"while_drawing": False, "enabled": attrgetter("model.rods.count")}
+_by_forces, _by_displacements = partial(_method, FORCE_METHOD), partial(_method, DISPLACEMENT_METHOD)
+action("force method", "k", "force method", HUBS, **_solved)(_by_forces)
+action("force method", "ctrl+k", "force method", (DISPLACEMENT_METHOD,))(_by_forces)
+action("displacement method", "ctrl+k", "displacement method", (*HUBS, FORCE_METHOD), **_solved)(
+    _by_displacements
+)

@@ -5,18 +5,19 @@ from pinjoint.components.language import marked, tr
 from pinjoint.components.tags import Selected
 from pinjoint.editor.context import PHYSICS, Context, Scene, Scenes
 from pinjoint.editor.scenes.files import Pictures, Save
-from pinjoint.editor.scenes.force_method import ForceMethod, Sets
 from pinjoint.editor.scenes.load import Load
+from pinjoint.editor.scenes.methods import DisplacementMethod, ForceMethod, Sets
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.editor.scenes.statics import Solve, Statics
 from pinjoint.systems.base import System
+from pinjoint.systems.input.actions import METHODS
 from pinjoint.systems.render.model.sheet import Stage
 
 __all__ = ["PHYSICS", "Scene", "Scenes", "Stage", "all_scenes", "scene_systems"]
 
 
 def all_scenes() -> list[Scene]:
-    """The seven modes of Pinjoint, beginning with the one that the program starts in, and the modes of mods."""
+    """The eight modes of Pinjoint, beginning with the one that the program starts in, and the modes of mods."""
     return [
         Pause(),
         Simulation(),
@@ -25,6 +26,7 @@ def all_scenes() -> list[Scene]:
         Save(),
         Load(),
         ForceMethod(),
+        DisplacementMethod(),
         *(scene() for scene in EXTENSIONS.scenes),
     ]
 
@@ -39,7 +41,7 @@ class Pause(Scene):
 
     name = "pause"
     heading = marked("Pause")
-    targets = ("simulation", "statics", "properties", "save", "load", "force method")
+    targets = ("simulation", "statics", "properties", "save", "load", *METHODS)
 
     def hint(self, context: Context) -> str:
         if context.model.particles.count == 0:

@@ -12,6 +12,7 @@ from pinjoint.editor.context import Context, Scene
 from pinjoint.editor.readouts import pinned, retype
 from pinjoint.editor.sliders import slider_stack
 from pinjoint.systems.base import Phase, System
+from pinjoint.systems.input.actions import METHODS
 
 
 class Statics(Scene):
@@ -19,7 +20,7 @@ class Statics(Scene):
 
     name = "statics"
     heading = marked("Statics")
-    targets = ("pause", "simulation", "properties", "save", "load", "force method")
+    targets = ("pause", "simulation", "properties", "save", "load", *METHODS)
 
     def enter(self, context: Context) -> None:
         """Show the diagrams of all elements, unless some are shown, and all of the model above the sliders."""

@@ -32,7 +32,6 @@ def button(
     at: Vector | None = None,
     inset: float = 1.0,
     again: bool = False,
-    grow: float = 0.0,
 ) -> Plate:
     """A button: a plate under the pointer, while it is pressed, or always if it stands out; main: the next thing to do."""
     quiet, outline = (faded(theme.text, _IDLE), theme.line) if stands_out else (None, None)
@@ -42,7 +41,7 @@ def button(
     if pressed:
         quiet = hover = faded(theme.focus, _PRESSED)
     looks = Plate(inside, quiet, outline, hover, inset=inset)
-    return replace(looks, action=action, enabled=enabled, item=item, at=at, again=again, grow=grow)
+    return replace(looks, action=action, enabled=enabled, item=item, at=at, again=again)
 
 
 def ink_of(theme: Theme, *, enabled: bool, pressed: bool = False) -> Colour:

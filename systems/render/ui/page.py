@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from pinjoint.components.camera import Rectangle
+from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.components.field import Vector
 from pinjoint.components.view import Page
 from pinjoint.systems.render.marks import Mark, Panel
 from pinjoint.systems.render.model.sheet import Sheet
@@ -27,8 +28,7 @@ def draw_page(sheet: Sheet) -> list[Mark]:
         return overlays
     layout = _Layout(page, v.width, u)
     step, table, blocks = layout.step / u, page.table, []
-    high = max(int((room[1] - v.top - 2 * _AROUND * u) / layout.step - len(layout.lines) - 1 + 0.01), 1)
-    first = min(page.first, max(layout.rows - high, 0))
+    first, high = layout.in_sight(page, room[1] - v.top)
     for begin in range(0, layout.blocks * layout.rows, max(layout.rows, 1)):
         rows = table[1 + begin + first : 1 + begin + min(first + high, layout.rows)]
         columns = []
@@ -54,11 +54,28 @@ def page_height(page: Page, width: float, unit: float) -> int:
     return math.ceil(rows * layout.step + (2 * _AROUND + BAR) * unit)
 
 
+def cell_at(page: Page, place: Viewport, unit: float, pixel: Vector | None) -> tuple[int, int] | None:
+    """Row and column of the cell of a page's table at a pixel, rows from 0, its head; None elsewhere."""
+    if pixel is None or not page.table or not place.contains(pixel):
+        return None
+    layout = _Layout(page, place.width, unit)
+    x, y = pixel[0] - place.left - EDGE * unit, pixel[1] - place.top - _AROUND * unit
+    line = int(y // layout.step) - len(layout.lines)
+    block, x = divmod(x, layout.across)
+    first, _ = layout.in_sight(page, place.height - BAR * unit)
+    row = line and line + first + int(block) * layout.rows
+    for column, wide in layout.columns:
+        if line >= 0 and 0.0 <= x <= wide + layout.gap and row < len(page.table):
+            return row, column
+        x -= wide + layout.gap
+    return None
+
+
 class _Layout:
     """A page in lines of a width; its table in blocks side by side, each under the head.
 
     A table that is too wide is set closer and smaller, then without the columns that follow the names. columns: the number
-    and the pixels of those that are left.
+    and the pixels of those that are left. across: pixels from block to block.
     """
 
     def __init__(self, page: Page, width: float, unit: float) -> None:
@@ -74,6 +91,12 @@ class _Layout:
         self.columns = list(enumerate(widths))
         while len(self.columns) > 2 and sum(wide + self.gap for _, wide in self.columns) - self.gap > room:
             self.columns.pop(1)  # the last columns are the results
-        block = sum(wide + self.gap for _, wide in self.columns) - self.gap + _BLOCKS * unit
-        self.blocks = max(int((room + _BLOCKS * unit) / block), 1) if widths else 1
+        self.across = sum(wide + self.gap for _, wide in self.columns) - self.gap + _BLOCKS * unit
+        self.blocks = max(int((room + _BLOCKS * unit) / self.across), 1) if widths and not page.whole else 1
         self.rows = -(-max(len(page.table) - 1, 0) // self.blocks)
+        self.around = 2 * _AROUND * unit
+
+    def in_sight(self, page: Page, height: float) -> tuple[int, int]:
+        """The first row of each block that is shown in a height, and how many are at most."""
+        high = max(int((height - self.around) / self.step - len(self.lines) - 1 + 0.01), 1)
+        return min(page.first, max(self.rows - high, 0)), high

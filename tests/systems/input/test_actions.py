@@ -11,10 +11,11 @@ from pinjoint import Session
 from pinjoint.components.settings import PAUSE, STATICS
 from pinjoint.components.tags import DiagramShown
 from pinjoint.documents.library import DATA_VARIABLE, models_folder
-from pinjoint.editor.scenes.force_method import ForceMethod
 from pinjoint.editor.scenes.form import FormScene
+from pinjoint.editor.scenes.methods import Method
 from pinjoint.systems.input.actions import (
     ACTIONS,
+    DISPLACEMENT_METHOD,
     FORCE_METHOD,
     LOAD,
     MENU,
@@ -85,6 +86,7 @@ def in_scene(scene: str) -> Session:
         SAVE: "s",
         LOAD: "d",
         FORCE_METHOD: "k",
+        DISPLACEMENT_METHOD: "ctrl+k",
         MENU: "menu",
         TABLE: "n",
     }
@@ -163,9 +165,9 @@ def _part(number: int, pick: str = "BD") -> Callable[[Session], None]:
     def go(session: Session) -> None:
         guide = session.scenes.active.guide  # type: ignore[attr-defined]
         session.press("k")
-        if number > 2:
+        if number > 2 and pick:
             guide.pick(guide.sets[0].model.rods[pick])
-        for _ in range(number - 3):
+        for _ in range(number - (3 if pick else 2)):
             session.press("k")
 
     return go
@@ -211,6 +213,7 @@ PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
     ("paste", PAUSE): _copied,
     ("paste", SIMULATION): _copied,
     ("fit", FORCE_METHOD): lambda session: session.press("drag middle", (30.0, 30.0)),
+    ("fit", DISPLACEMENT_METHOD): lambda session: session.press("drag middle", (30.0, 30.0)),
     ("fit", PAUSE): lambda session: session.press("drag middle", (30.0, 30.0)),
     ("fit", STATICS): lambda session: session.press("drag middle", (30.0, 30.0)),
     ("fit", SIMULATION): lambda session: session.press("drag middle", (30.0, 30.0)),
@@ -219,6 +222,10 @@ PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
     ("next grid", PAUSE): _grids,
     ("select", STATICS): lambda session: session.select(),
     ("pick unknown", FORCE_METHOD): _over_a_rod,
+    ("pick unknown", DISPLACEMENT_METHOD): _over_a_rod,
+    ("part before", FORCE_METHOD): lambda session: session.press("k"),
+    ("part before", DISPLACEMENT_METHOD): lambda session: session.press("k"),
+    ("to the equations", DISPLACEMENT_METHOD): _part(4, ""),
     ("release x", FORCE_METHOD): _support_of_d,
     ("release y", FORCE_METHOD): _support_of_d,
     ("release another", FORCE_METHOD): _part(7),
@@ -275,8 +282,8 @@ def seen(session: Session) -> Any:
         form = scene.form
         shown += [form.selected, form.chosen, form.first, form.message]
         shown += [(box.text, box.caret, box.marked) for box in form.boxes]
-    if isinstance(scene, ForceMethod) and scene.guide is not None:
-        shown += [scene.guide.part, len(scene.guide.sets), scene.guide.refusal, scene.hint(session)]
+    if isinstance(scene, Method) and scene.guide is not None:
+        shown += [scene.guide.shown_now, len(scene.guide.sets), scene.guide.refusal, scene.hint(session)]
         shown += [repr(view.camera) for _, view in scene.stages(session)]
     return shown
 

@@ -1,11 +1,12 @@
-"""Force method: the guided solution of a hyperstatic structure, three systems side by side."""
+"""The force method and the displacement method: guided solutions of a structure, three systems side by side."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -13,20 +14,21 @@ from pinjoint.components.camera import Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
-from pinjoint.components.settings import Settings
+from pinjoint.components.settings import HUBS, Settings
 from pinjoint.components.slider import SliderStack
 from pinjoint.components.view import BETWEEN, Page, Status, View
 from pinjoint.editor.context import Context, Scene
 from pinjoint.editor.sliders import scale_control
-from pinjoint.force_method import PARTS, words
+from pinjoint.methods import displacement_words, words
 from pinjoint.systems.base import Phase, System
+from pinjoint.systems.input.actions import DISPLACEMENT_METHOD, FORCE_METHOD, METHODS
 from pinjoint.systems.render.model.arrows import largest_force
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.overlays import heading_height
-from pinjoint.systems.render.ui.page import page_height
+from pinjoint.systems.render.ui.page import cell_at, page_height
 
 if TYPE_CHECKING:  # it imports scipy
-    from pinjoint.force_method.guide import Guide, Mechanism, Set
+    from pinjoint.methods.guide import Guide, Mechanism, Set
 
 WIDE = 1.1  # width / height from which the sets stand side by side
 _STILL = 0.66  # of the window, in which sets stand still while equations change
@@ -37,7 +39,6 @@ LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; be
 HIGH = 340.0  # points of a set in which a slider has room below supports and reactions
 MOVED = 0.08  # of the size of a structure: about what drawn displacements add to it
 _LEAST_EXPLAINED = 300.0  # points of a window; lower ones have no legend
-_NOTHING = (-1, False, "", 0, 0)  # no part is shown yet
 CAPTION, SCALE, MARGIN = 66.0, 48.0, 40.0  # points above, below (its slider), at most about a structure
 
 
@@ -50,22 +51,21 @@ class _Work:
     said: bool = False
 
 
-class ForceMethod(Scene):
-    """The seven parts of the force method.
+class Method(Scene):
+    """The parts of a method.
 
-    shown_guide: the guide as pictures show it, announced work not yet done. first_unknown: the name of the rod to
-    release when it begins; "": a person will choose.
+    shown_guide: the guide as pictures show it, announced work not yet done. words: the module of its texts.
     """
 
-    name = "force method"
+    words: ClassVar[ModuleType]
 
     def __init__(self) -> None:
         self.shown_guide: Guide | None = None
-        self.first_unknown = ""
         self._work: _Work | None = None
         self._problem = ""
         self._mechanism: Mechanism | None = None  # the whole structure, if it cannot be solved
-        self._page, self._page_of, self._first = Page(), _NOTHING, 0
+        self._page, self._first = Page(), 0
+        self._page_of: tuple[object, ...] | None = None
         self._blank = Model()
         self._places = [View(page=Page(), legend=False, fitted=True) for _ in range(3)]
         self._head, self._foot = View(page=Page(), explains_all=True), View(page=Page(), legend=False)
@@ -78,30 +78,30 @@ class ForceMethod(Scene):
 
     @property
     def _said(self) -> str:
-        return words.message(self.shown_guide) if self.shown_guide else self._problem
+        said: str = self.words.message(self.shown_guide) if self.shown_guide else self._problem
+        return said
 
     def enter(self, context: Context) -> None:
-        self._problem, self._mechanism, self._page_of = "", None, _NOTHING
-        unknown, self.first_unknown = self.first_unknown, ""
-        self.work(context, tr("Solving the structure"), partial(self._begin, context, unknown))
+        self._problem, self._mechanism, self._page_of = "", None, None
+        self.work(context, tr("Solving the structure"), partial(self._begin, context))
 
-    def _begin(self, context: Context, unknown: str) -> None:
+    def _begin(self, context: Context) -> None:
         # Here only, since they import scipy.
-        from pinjoint.force_method.copies import base_structure
-        from pinjoint.force_method.guide import Guide, Mechanism, view_like
-        from pinjoint.systems.statics.unknowns import ForceMethodError
+        from pinjoint.methods.copies import base_structure
+        from pinjoint.methods.guide import Mechanism, view_like
+        from pinjoint.systems.statics.unknowns import MethodError
 
         try:
-            self.shown_guide = Guide(context.model, context.schedule, context.view)
-        except ForceMethodError as error:
+            self.shown_guide = self.guide_of(context)
+        except MethodError as error:
             self._problem = str(error)
             if error.motion is not None:
                 copy = base_structure(context.model, [])
                 self._mechanism = Mechanism(copy, error.motion, view_like(context.view))
-        else:
-            if unknown:
-                self.shown_guide.next()
-                self.shown_guide.pick(self.shown_guide.sets[0].model.rods[unknown])
+
+    def guide_of(self, context: Context) -> Guide:
+        """The guide at its beginning. Raises MethodError."""
+        raise NotImplementedError
 
     def exit(self, context: Context) -> None:
         self.shown_guide = self._mechanism = self._work = None
@@ -144,7 +144,7 @@ class ForceMethod(Scene):
         return self._work is not None or bool(self._moving())
 
     def hint(self, context: Context) -> str:
-        return words.hint(self.shown_guide) if self.shown_guide else tr("Esc back")
+        return str(self.words.hint(self.shown_guide)) if self.shown_guide else tr("Esc back")
 
     # --- what is seen ------------------------------------------------------------------------------
 
@@ -159,25 +159,26 @@ class ForceMethod(Scene):
     def _lay_out(self, context: Context) -> list[tuple[Model, View]]:
         """Place message, sets and equations in the window; returns the stages of the sets."""
         guide, ratio, whole = self.shown_guide, context.view.pixel_ratio, context.view.canvas
+        self._foot.page = self._working()
+        wanted = page_height(self._foot.page, whole.width, ratio)
+        foot = min(wanted, round(_MOST_OF_HEIGHT * whole.height))
+        _place(self._foot, Viewport(whole.left, round(whole.bottom) - foot, whole.width, foot), ratio)
+        if guide is not None:
+            guide.point(cell_at(self._foot.page, self._foot.camera.viewport, ratio, context.view.pointer))
         self._head.heading = context.notice or self._said
-        part = tr("Part {part} of {parts}", part=guide.part, parts=PARTS) if guide else tr("Not possible")
+        part = tr("Part {part} of {parts}", part=guide.part, parts=guide.parts) if guide else tr("Not possible")
         if self._work is not None:
             self._head.heading, part = self._work.text, tr("Working")
         hint = joined([tr("still moving") if self._moving() else "", self.hint(context)], BETWEEN)
+        hint = joined([tr("Wheel more rows") if foot < wanted else "", hint], BETWEEN)
         self._foot.status = Status(time=None, state=part, hint=hint)
-        self._foot.page = self._working()
         self._head.legend = context.view.legend and whole.height >= _LEAST_EXPLAINED * ratio
         explained = self._explained() if self._head.legend else ()
         head = round(
             heading_height(self._head.heading, whole.width, ratio, load_theme(context.view.theme), explained)
         )
-        wanted = page_height(self._foot.page, whole.width, ratio)
-        foot = min(wanted, round(_MOST_OF_HEIGHT * whole.height))
-        if foot < wanted:
-            self._foot.status = replace(self._foot.status, hint=joined([tr("Wheel more rows"), hint], BETWEEN))
         middle = Viewport(whole.left, whole.top + head, whole.width, max(whole.height - head - foot, 1))
         _place(self._head, Viewport(whole.left, whole.top, whole.width, head), ratio)
-        _place(self._foot, Viewport(whole.left, middle.top + middle.height, whole.width, foot), ratio)
         return self._sets(context, middle, ratio)
 
     def _explained(self) -> list[str]:
@@ -191,14 +192,13 @@ class ForceMethod(Scene):
         guide = self.shown_guide
         if guide is None:
             return Page()
-        shown = (guide.part, guide.in_thesis, guide.quantity, len(guide.released), guide.acting)
-        if shown != self._page_of:
-            self._page = Page(words.working(guide), words.table(guide))
-            self._page_of, self._first = shown, 0
+        if guide.shown_now != self._page_of:
+            self._page = Page(self.words.working(guide), self.words.table(guide), whole=guide.whole)
+            self._page_of, self._first = guide.shown_now, 0
         return replace(self._page, first=self._first)
 
     def _sets(self, context: Context, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
-        captions = words.captions(self.shown_guide) if self.shown_guide else [("",)] * 3
+        captions = self.words.captions(self.shown_guide) if self.shown_guide else [("",)] * 3
         there: list[Set | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
         places = [(index, _third(middle, index)) for index in range(3)]
         first = places[0][1]  # where it has no room for a set beside or above others, only one is shown
@@ -209,9 +209,9 @@ class ForceMethod(Scene):
             picks = self.shown_guide is not None and self.shown_guide.part == 2  # from set 1
             places = [(0 if picks else len(there) - 1, middle)]
         stages = [(one.model, one.view) for one in there]
-        largest = max((largest_force(*stage) for stage in stages), default=0.0)
+        largest = max((largest_force(*stage) for stage in stages if stage[1].has_units), default=0.0)
         for _, view in stages:
-            view.largest_force = largest
+            view.largest_force = largest * view.has_units  # units of an unknown are no forces
         stages += [(self._blank, view) for view in self._places[len(there) :]]
         shown = []
         for index, viewport in places:
@@ -221,7 +221,7 @@ class ForceMethod(Scene):
                 _fit(model, view, context)
             view.caption = captions[index]
             shown.append((model, view))
-        if self.shown_guide is not None and not self.shown_guide.is_frame:
+        if self.shown_guide is not None and self.shown_guide.one_scale:
             control = scale_control(self.shown_guide.sets[0].model.settings)
             high = shown[0][1].camera.viewport.height >= HIGH * ratio
             for number, (_, view) in enumerate(shown):
@@ -230,7 +230,8 @@ class ForceMethod(Scene):
 
     def scaled(self, context: Context) -> list[Settings]:
         """All sets are drawn to one scale."""
-        return [one.model.settings for one in self.shown_guide.sets] if self.shown_guide else []
+        guide = self.shown_guide
+        return [one.model.settings for one in guide.sets] if guide is not None and guide.one_scale else []
 
     # --- looking closer: all sets alike ----------------------------------------------------------------
 
@@ -260,19 +261,54 @@ class ForceMethod(Scene):
             _fit(model, view, context)
 
 
-class Sets(System):
-    """Lets the time of one frame pass in the sets of the force method that move."""
+class ForceMethod(Method):
+    """The seven parts of the force method. first_unknown: the name of the rod to release when it begins; "": a person will
+    choose."""
 
-    name = "force_method.sets"
+    name: ClassVar[str] = FORCE_METHOD
+    words: ClassVar[ModuleType] = words
+    targets = (*HUBS, DISPLACEMENT_METHOD)
+    first_unknown = ""
+
+    def guide_of(self, context: Context) -> Guide:
+        """The guide in part 1, or with the first unknown, which then is forgotten."""
+        from pinjoint.methods.guide import ForceGuide
+
+        unknown, self.first_unknown = self.first_unknown, ""
+        guide = ForceGuide(context.model, context.schedule, context.view)
+        if unknown:
+            guide.next()
+            guide.pick(guide.sets[0].model.rods[unknown])
+        return guide
+
+
+class DisplacementMethod(Method):
+    """The six parts of the displacement method."""
+
+    name: ClassVar[str] = DISPLACEMENT_METHOD
+    words: ClassVar[ModuleType] = displacement_words
+    targets = (*HUBS, FORCE_METHOD)
+
+    def guide_of(self, context: Context) -> Guide:
+        """The guide in part 1."""
+        from pinjoint.methods.displacements import DisplacementGuide
+
+        return DisplacementGuide(context.model, context.schedule, context.view)
+
+
+class Sets(System):
+    """Lets the time of one frame pass in the sets of a method that move."""
+
+    name = "methods.sets"
     phase = Phase.STEP
-    scenes = ("force method",)
+    scenes = METHODS
     reads = ("pace",)
     writes = ("sets",)
 
     def process(self, frame: Any) -> None:
         """Let their time pass."""
         scene = frame.session.scenes.active
-        if isinstance(scene, ForceMethod):
+        if isinstance(scene, Method):
             scene.advance(frame.session, frame.elapsed)
 
 

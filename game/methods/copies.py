@@ -13,8 +13,8 @@ from pinjoint.components.particle import in_support_axes, of_rigid_supports, sup
 from pinjoint.components.written import ROUNDING
 from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.external import External
-from pinjoint.systems.statics.force_method import SetState
 from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.superposition import SetState, Superposition
 from pinjoint.systems.statics.unknowns import Unknown
 
 _ACTING = {  # what loads, moves or strains a structure, by table
@@ -81,13 +81,26 @@ def loaded(model: Model, released: Sequence[Unknown], amounts: Sequence[float]) 
     return copy
 
 
-def still(copy: Model, whole: Model, state: SetState) -> Model:
-    """A copy of a structure, perhaps without some of its rods, undeformed, with the forces of a state; none may run."""
+def held(copy: Model, solution: Superposition) -> Model:
+    """The copy, in which the unknowns of the displacement method are constrained."""
+    fixed = np.column_stack([copy.particles.fixed, copy.particles.fixed_rotation])
+    for one in solution.unknowns:
+        fixed[one.place] = True
+    copy.assign(list(copy.particles), "fixed", fixed[:, :2].tolist())
+    copy.assign(list(copy.particles), "fixed_rotation", fixed[:, 2].tolist())
+    return copy
+
+
+def still(copy: Model, whole: Model, state: SetState, *, moved: bool = False) -> Model:
+    """A copy of a structure, perhaps without some of its rods, with the forces of a state; none may run.
+
+    moved: with its displacements; else undeformed.
+    """
     rods = copy.rods
     here = [whole.rods[name].row for name in rods.names]
-    copy.writable("particles.displacement")[...] = 0.0
-    copy.writable("particles.rotation")[...] = 0.0
-    if rods.bending_stiffness.any():
+    copy.writable("particles.displacement")[...] = state.displacement if moved else 0.0
+    copy.writable("particles.rotation")[...] = state.rotation if moved else 0.0
+    if rods.bending_stiffness.any() and not moved:
         copy.writable("rods.bending_stiffness")[...] *= _STIFF
     load = np.pad(External.of(copy).at(1.0), ((0, 0), (0, 1)))
     held = supported(copy)

@@ -1,6 +1,6 @@
-"""The force method: the guide through its seven parts, and their words."""
+"""The force method and the displacement method: the guides through their parts, with words, tables and reports."""
 
-PARTS = 7
+PARTS = 7  # of the force method
 _BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 

@@ -1,4 +1,4 @@
-"""Tables of the force method: virtual work rod by rod, and superposition; their numbers are written as they are read."""
+"""Tables of methods: superposition, and virtual work rod by rod; their numbers are written as they are read."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import in_support_axes, supported
 from pinjoint.components.rod import bends, nodes
-from pinjoint.force_method import index
+from pinjoint.methods import index
 from pinjoint.systems.statics.equations import AXES, Array, Rows, largest
-from pinjoint.systems.statics.force_method import SetState, Solution, Terms, bulge
+from pinjoint.systems.statics.force_method import Solution, Terms, bulge
+from pinjoint.systems.statics.superposition import SetState, Superposition
 from pinjoint.tables import Column, Table
 
 _FINER = 5  # significant digits of forces that are added
@@ -26,13 +27,93 @@ _SHOWN = 3  # unknowns up to which each has a column of superposition
 
 @dataclass(frozen=True)
 class Tables:
-    """The tables of a solution.
+    """The tables of a solution that every method has: superposition, N₀ + Σ X n. letter: of its unknowns."""
+
+    model: Model
+    solution: Superposition
+    letter = "X"
+
+    @property
+    def bends(self) -> bool:
+        """True if members bend."""
+        return bends(self.model)
+
+    def _names(self, rows: Rows) -> list[str]:
+        names = self.model.rods.names
+        return [names[row] for row in rows.tolist()]
+
+    def axial_forces(self, most: int = _SHOWN) -> Table:
+        """N = N₀ + Σ X n of all rods, and by how much linear theory of the real structure differs.
+
+        most: unknowns up to which each has a column.
+        """
+        names = self.model.rods.names
+        return self._superposed("N", "kN", tr("rod"), names, lambda state: state.axial_force, most)
+
+    def moments(self, most: int = _SHOWN) -> Table:
+        """Likewise M = M₀ + Σ X m at both ends of the rods that bend."""
+        rods = self.model.rods
+        rows = np.flatnonzero((rods.turning_shares > 0.0).any(axis=1))
+        names = [joined([rods.names[row], tr(end)], ".") for row in rows.tolist() for end in ENDS]
+        return self._superposed(
+            "M", "kN·m", tr("rod"), names, lambda state: state.bending_moment[rows].ravel(), most
+        )
+
+    def reactions(self, most: int = _SHOWN) -> Table:
+        """Likewise R = R₀ + Σ X r of all supports; those released have their unknown."""
+        held = supported(self.model) & [True, True, self.bends]
+        places = np.argwhere(held & nodes(self.model)[:, None])
+        unit = "kN, kN·m" if self.bends else "kN"
+        return self._superposed(
+            "R",
+            unit,
+            tr("support"),
+            self.directions(places.tolist()),
+            lambda state: in_support_axes(self.model, state.reaction)[tuple(places.T)],
+            most,
+        )
+
+    def directions(self, places: Iterable[Sequence[int]]) -> list[str]:
+        """Names of directions of particles, by row and axis."""
+        names = self.model.particles.names
+        return [joined([names[row], tr(AXES[axis])], ".") for row, axis in places]
+
+    def _superposed(
+        self,
+        symbol: str,
+        unit: str,
+        corner: str,
+        names: Sequence[str],
+        of: Callable[[SetState], Array],
+        most: int,
+    ) -> Table:
+        solution, small = self.solution, symbol.lower()
+        parts = [x * of(state) for x, state in zip(solution.amounts.tolist(), solution.units, strict=True)]
+        real, base = of(solution.real), of(solution.base)
+        added = sum(parts, np.zeros_like(base))
+        terms = [(f"+ {self.letter}{index(i + 1)}{small}{index(i + 1)}", part) for i, part in enumerate(parts)]
+        size = max(map(largest, (real, base, *parts)))
+        off = np.where(np.abs(base + added - real) <= written.ROUNDING * size, 0.0, base + added - real)
+        shown = [
+            (symbol, unit, base + added),
+            (f"= {symbol}₀", "", base),
+            *(
+                (title, "", part)
+                for title, part in (terms if len(terms) <= most else [(f"+ Σ{self.letter}{small}", added)])
+            ),
+        ]
+        columns = [Column(*column, digits=_FINER, size=size) for column in shown]
+        return Table(corner, names, [*columns, Column(tr("difference"), "", off, digits=1)])
+
+
+@dataclass(frozen=True)
+class ForceTables(Tables):
+    """Those of the force method, with virtual work.
 
     Gaps and flexibilities are written in cm and kN; where moments are unknown, in m, rad, kN and kN·m, in which these are
     symmetric.
     """
 
-    model: Model
     solution: Solution
 
     @property
@@ -66,11 +147,6 @@ class Tables:
         return "rad, kN·m" if all(one.is_moment for one in self.solution.unknowns) else "m, rad, kN, kN·m"
 
     @property
-    def bends(self) -> bool:
-        """True if members bend."""
-        return bends(self.model)
-
-    @property
     def _carrying(self) -> Rows:
         """Rods with an axial force that counts: all of a truss, those with one in a frame."""
         pulls = np.abs(self.solution.work.axial.unit[:, :, 0])
@@ -89,10 +165,6 @@ class Tables:
             force, per = solution.units[i].axial_force, "1/m" if solution.unknowns[i].is_moment else ""
             columns.append(Column(f"n{index(i + 1)}", per, force[rows], digits=_FINER, least=largest(force)))
         return Table(tr("rod"), self._names(rows), columns)
-
-    def _names(self, rows: Rows) -> list[str]:
-        names = self.model.rods.names
-        return [names[row] for row in rows.tolist()]
 
     def _products(
         self, which: Sequence[int], rows: Rows, terms: Terms, other: Terms, heads: str, last: int | None
@@ -165,7 +237,7 @@ class Tables:
             both = f"r{index(i + 1)}²/k" if i == j else f"r{index(i + 1)}r{index(j + 1)}/k"
             values = self.factor * terms.of_units(i, j)
             columns.append(Column(both, self.flexibility_unit(i, j), values, summed=True))
-        return Table(tr("support"), self._supports(settled), columns)
+        return Table(tr("support"), self.directions(settled.tolist()), columns)
 
     def sums(self, i: int) -> tuple[str, ...]:
         """What δᵢ₀, δᵢᵢ and δⱼᵢ, j < i, of a frame are sums of."""
@@ -195,44 +267,6 @@ class Tables:
         same = "" if i == j else f" = δ{index(j + 1, i + 1)}"
         return f"δ{index(i + 1, j + 1)}{same} = {found} {self.flexibility_unit(i, j)}"
 
-    # --- superposition -----------------------------------------------------------------------------
-
-    def axial_forces(self, most: int = _SHOWN) -> Table:
-        """N = N₀ + Σ X n of all rods, and by how much linear theory of the real structure differs.
-
-        most: unknowns up to which each has a column.
-        """
-        names = self.model.rods.names
-        return self._superposed("N", "kN", tr("rod"), names, lambda state: state.axial_force, most)
-
-    def moments(self, most: int = _SHOWN) -> Table:
-        """Likewise M = M₀ + Σ X m at both ends of the rods that bend."""
-        rods = self.model.rods
-        rows = np.flatnonzero((rods.turning_shares > 0.0).any(axis=1))
-        names = [joined([rods.names[row], tr(end)], ".") for row in rows.tolist() for end in ENDS]
-        return self._superposed(
-            "M", "kN·m", tr("rod"), names, lambda state: state.bending_moment[rows].ravel(), most
-        )
-
-    def reactions(self, most: int = _SHOWN) -> Table:
-        """Likewise R = R₀ + Σ X r of all supports; those released have their unknown."""
-        held = supported(self.model) & [True, True, self.bends]
-        places = np.argwhere(held & nodes(self.model)[:, None])
-        unit = "kN, kN·m" if self.bends else "kN"
-        return self._superposed(
-            "R",
-            unit,
-            tr("support"),
-            self._supports(places),
-            lambda state: in_support_axes(self.model, state.reaction)[tuple(places.T)],
-            most,
-        )
-
-    def _supports(self, places: Rows) -> list[str]:
-        """Names of directions of particles, (k, 2)."""
-        names = self.model.particles.names
-        return [joined([names[row], tr(AXES[axis])], ".") for row, axis in places.tolist()]
-
     def sets(self) -> Table:
         """Axial forces of set 1 = set 2 + set 3 for every rod, in the thesis' convention."""
         solution = self.solution
@@ -242,33 +276,6 @@ class Tables:
         values = (real, base, total - base)
         columns = [Column(title, "", of, digits=_FINER) for title, of in zip(titles, values, strict=True)]
         return Table("kN", self.model.rods.names, [*columns, Column(tr("residual"), "", off, digits=1)])
-
-    def _superposed(
-        self,
-        symbol: str,
-        unit: str,
-        corner: str,
-        names: Sequence[str],
-        of: Callable[[SetState], Array],
-        most: int,
-    ) -> Table:
-        solution, small = self.solution, symbol.lower()
-        parts = [x * of(state) for x, state in zip(solution.force.tolist(), solution.units, strict=True)]
-        real, base = of(solution.real), of(solution.base)
-        added = sum(parts, np.zeros_like(base))
-        terms = [(f"+ X{index(i + 1)}{small}{index(i + 1)}", part) for i, part in enumerate(parts)]
-        size = max(map(largest, (real, base, *parts)))
-        off = np.where(np.abs(base + added - real) <= written.ROUNDING * size, 0.0, base + added - real)
-        shown = [
-            (symbol, unit, base + added),
-            (f"= {symbol}₀", "", base),
-            *(
-                (title, "", part)
-                for title, part in (terms if len(terms) <= most else [(f"+ ΣX{small}", added)])
-            ),
-        ]
-        columns = [Column(*column, digits=_FINER, size=size) for column in shown]
-        return Table(corner, names, [*columns, Column(tr("difference"), "", off, digits=1)])
 
 
 def _at_ends(title: str, unit: str, moments: Array, rows: Rows, least: float) -> list[Column]:

@@ -10,11 +10,11 @@ from pinjoint.components.bent import AXIAL
 from pinjoint.components.field import CM
 from pinjoint.components.language import listed, marked, plural, tr
 from pinjoint.components.view import BETWEEN
-from pinjoint.force_method import PARTS, index
+from pinjoint.methods import PARTS, index
 
 if TYPE_CHECKING:  # they import scipy
-    from pinjoint.force_method.guide import Guide
-    from pinjoint.force_method.tables import Tables
+    from pinjoint.methods.guide import ForceGuide
+    from pinjoint.methods.tables import ForceTables
     from pinjoint.systems.statics.force_method import Solution
     from pinjoint.systems.statics.unknowns import Unknown
 
@@ -32,7 +32,7 @@ EXACT = 5  # significant digits of gaps and flexibilities, from which unknowns f
 # --- messages and hints ------------------------------------------------------------------------------
 
 
-def message(guide: Guide) -> str:
+def message(guide: ForceGuide) -> str:
     """The line of red text: the present part, or the reason of a refusal."""
     if guide.refusal:
         return guide.refusal
@@ -67,7 +67,7 @@ def message(guide: Guide) -> str:
     }[guide.part]
 
 
-def hint(guide: Guide) -> str:
+def hint(guide: ForceGuide) -> str:
     """The next possible step."""
     steps = [
         tr("I next of M, V, N") if guide.is_frame else tr("I forces"),
@@ -93,7 +93,7 @@ def hint(guide: Guide) -> str:
 # --- captions ----------------------------------------------------------------------------------------
 
 
-def captions(guide: Guide) -> list[Caption]:
+def captions(guide: ForceGuide) -> list[Caption]:
     """The captions of the three sets: name, load, and displacements once they are measured."""
     if guide.mechanism is not None:
         return [(tr(NAMES[0]),), (tr("A mechanism: nothing resists this motion"),), ("",)]
@@ -114,7 +114,7 @@ def captions(guide: Guide) -> list[Caption]:
     return shown
 
 
-def _of_textbook(guide: Guide, solution: Solution) -> tuple[Caption, ...]:
+def _of_textbook(guide: ForceGuide, solution: Solution) -> tuple[Caption, ...]:
     """What loads set 3, and the gaps in each set."""
     count, tables = len(guide.released), guide.tables
     third = f"X{index(guide.acting + 1)} = 1"
@@ -132,7 +132,7 @@ def _of_textbook(guide: Guide, solution: Solution) -> tuple[Caption, ...]:
     return (third,), (), tuple(gaps), tuple(flexibilities)
 
 
-def _of_thesis(guide: Guide, solution: Solution) -> tuple[Caption, ...]:
+def _of_thesis(guide: ForceGuide, solution: Solution) -> tuple[Caption, ...]:
     """What loads set 3, and the displacement of every unknown: Δ, the change of distance of a rod, or u, of a support."""
     last, several = guide.released[guide.acting], len(guide.released) > 1
     third = tr("a unit force at {name}", name=last.name)
@@ -161,7 +161,7 @@ def amount(solution: Solution, which: int) -> str:
 # --- the working -------------------------------------------------------------------------------------
 
 
-def working(guide: Guide) -> tuple[str, ...]:
+def working(guide: ForceGuide) -> tuple[str, ...]:
     """The degree of indeterminacy (part 1), what the unknowns are, and the compatibility equations with their numbers."""
     solution = guide.solution
     if guide.part == 1:
@@ -195,7 +195,7 @@ def degree_of(degree: int) -> str:
     )
 
 
-def explained(guide: Guide) -> tuple[str, ...]:
+def explained(guide: ForceGuide) -> tuple[str, ...]:
     """What the present part of the textbook's solution is about, with its formulas (parts 2 to 6)."""
     assert guide.solution is not None
     number, tables = guide.acting + 1, guide.tables
@@ -262,7 +262,7 @@ def gap_of(unknown: Unknown, gap: str, number: str) -> str:
     return tr("{gap}: how far the load moves {name}; positive in the direction of {unknown}.", **what)
 
 
-def equation(tables: Tables, row: int) -> tuple[str, str]:
+def equation(tables: ForceTables, row: int) -> tuple[str, str]:
     """δ₀ + Σ δ X = c of an unknown in symbols, and with its numbers."""
     solution, factor, symbols, numbers = tables.solution, tables.factor, "", ""
     for j, value in enumerate(solution.flexibility[row].tolist()):
@@ -276,7 +276,7 @@ def equation(tables: Tables, row: int) -> tuple[str, str]:
     )
 
 
-def equations(tables: Tables) -> tuple[str, ...]:
+def equations(tables: ForceTables) -> tuple[str, ...]:
     """A line for every unknown, and the solution X."""
     count = len(tables.solution.unknowns)
     lines = [f"{':  '.join(equation(tables, i))}  ({tables.units})" for i in range(count)]
@@ -315,11 +315,11 @@ def _cm(metres: float, *, bracket: bool = False) -> str:
     return f"({text})" if bracket and text.startswith("−") else text
 
 
-def table(guide: Guide) -> Sequence[tuple[str, ...]]:
+def table(guide: ForceGuide) -> Sequence[tuple[str, ...]]:
     """Virtual work, rod by rod (part 6), and superposition (part 7)."""
     if guide.solution is None or guide.part < 6:
         return ()
-    from pinjoint.force_method.tables import PRODUCTS  # it imports scipy
+    from pinjoint.methods.tables import PRODUCTS  # it imports scipy
 
     tables, last = guide.tables, guide.acting
     if guide.in_thesis:

@@ -1,4 +1,4 @@
-"""The guide through the force method: three sets of one structure, in seven parts."""
+"""The guide through a method: three sets of one structure, part by part; that through the force method, in seven."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from pinjoint.components.bent import MOMENT
+from pinjoint.components.bent import MOMENT, is_frame
 from pinjoint.components.field import LARGEST, SMALLEST, Column, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
@@ -22,18 +22,19 @@ from pinjoint.components.table import Table
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import THESIS, View
 from pinjoint.documents.shapes import DRAWN_SHARE
-from pinjoint.force_method import PARTS
-from pinjoint.force_method.copies import base_structure, exact_forces, loaded, still
-from pinjoint.force_method.tables import Tables
+from pinjoint.methods import PARTS
+from pinjoint.methods.copies import base_structure, exact_forces, loaded, still
+from pinjoint.methods.tables import ForceTables
 from pinjoint.systems.edit.arrows import extent
 from pinjoint.systems.run.real_time import RealTimeRunner
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
 from pinjoint.systems.statics.counting import Count
 from pinjoint.systems.statics.equations import largest
-from pinjoint.systems.statics.force_method import SetState, Solution, solve
+from pinjoint.systems.statics.force_method import Solution, solve
 from pinjoint.systems.statics.settle import settle
-from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown
+from pinjoint.systems.statics.superposition import SetState, Superposition
+from pinjoint.systems.statics.unknowns import MethodError, Unknown
 
 DIAGRAM_HEIGHT = 34.0  # px of the largest force diagram
 SWING = 3.0  # s in which a mechanism is shown to move there and back
@@ -71,7 +72,8 @@ class Set:
         """Choose drawing scales for the displacements and forces of a final state."""
         size = extent(self.model) if self.model.rods.count else 0.0
         self.suited = scale_to(DRAWN_SHARE * size, largest(state.displacement))
-        self.model.settings.diagram_scale = scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
+        if not is_frame(self.model):
+            self.model.settings.diagram_scale = scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
 
     def settle(self) -> None:
         """Skip the rest of the motion: go to its equilibrium, if there is one."""
@@ -108,40 +110,31 @@ class Mechanism:
 
 
 class Guide:
-    """The present part of the force method, and the answers so far.
+    """The present part of a method, and the answers so far.
 
-    part: 1 to PARTS, of which 5 and 6 are gone through for every unknown. released: the static unknowns, the newest last.
-    solution: with all of them. acting: the number, from 0, of that which acts in set 3. sets: those that exist so far.
-    mechanism: that which a refused release would leave. quantity: of which frames show diagrams. Raises ForceMethodError at
-    the start if the structure cannot carry its load.
+    part: 1 to `parts`. solution: with all unknowns, once they are known. acting: the number, from 0, of that which acts in
+    set 3. sets: those that exist so far. refusal: of what was picked. mechanism: that which a refused release would leave.
+    quantity: of which frames show diagrams. Raises MethodError at the start if the structure cannot carry its load.
     """
+
+    parts = PARTS
+    whole = False  # tables are not parted into blocks side by side
+    one_scale = False  # a slider scales the displacements of all sets
 
     def __init__(self, model: Model, schedule: Schedule, view: View) -> None:
         self.model, self._schedule, self._view = model, schedule, view
-        self.part = 1
-        self.released: list[Unknown] = []
-        self.acting = self._known = 0  # _known: those of a solution before
-        self.solution: Solution | None = None
-        self.exact: list[float] | None = None
+        self.part, self.acting = 1, 0
+        self.solution: Superposition | None = None
         self.refusal = ""
         self.mechanism: Mechanism | None = None
-        self.axis_wanted: Particle | None = None
         self.quantity = MOMENT
-        real = solve(model, [])
         self.count = Count.of(model)
         self.sets: list[Set] = []
-        self.sets = [self._make_set([], real.real)]
-        self._scale_alike()
 
     @property
-    def unknown(self) -> Unknown | None:
-        """The unknown that acts in set 3, or is to."""
-        return self.released[self.acting] if self.released else None
-
-    @property
-    def in_thesis(self) -> bool:
-        """True if texts follow the thesis' convention, p = (Δ − Δ₀) / Δ₁, not the textbook's."""
-        return self._view.convention == THESIS
+    def shown_now(self) -> tuple[object, ...]:
+        """What the equations and the table depend on."""
+        return (self.part, self.acting, self.quantity)
 
     @property
     def is_frame(self) -> bool:
@@ -155,10 +148,67 @@ class Guide:
             one.view.quantity = self.quantity
 
     @property
-    def tables(self) -> Tables:
+    def running(self) -> list[Set]:
+        """The sets that move in this part."""
+        return []
+
+    @property
+    def shown(self) -> list[Set | Mechanism]:
+        """The structures in the picture, from left to right."""
+        return [*self.sets, self.mechanism] if self.mechanism is not None else [*self.sets]
+
+    @property
+    def moving(self) -> list[Set | Mechanism]:
+        """The structures that frames change."""
+        return [one for one in (*self.running, self.mechanism) if one is not None and one.moves]
+
+    def point(self, cell: tuple[int, int] | None) -> None:
+        """The pointer is over a cell (row, column) of the table, or over none."""
+
+    def _still(self, copy: Model, state: SetState, *, moved: bool = False) -> Set:
+        """A set that shows a state without running."""
+        view = view_like(self._view)
+        view.all_diagrams, view.quantity = True, self.quantity
+        return Set(still(copy, self.model, state, moved=moved), view)
+
+
+class ForceGuide(Guide):
+    """Of the force method, of which parts 5 and 6 are gone through for every unknown.
+
+    released: the static unknowns, the newest last. exact: the unknowns by exact geometry.
+    """
+
+    solution: Solution | None
+
+    def __init__(self, model: Model, schedule: Schedule, view: View) -> None:
+        super().__init__(model, schedule, view)
+        self.axis_wanted: Particle | None = None  # the support of which a direction is to be chosen
+        self.one_scale = not self.is_frame
+        self.released: list[Unknown] = []
+        self._known = 0  # those of a solution before
+        self.exact: list[float] | None = None
+        self.sets = [self._make_set([], solve(model, []).real)]
+        self._scale_alike()
+
+    @property
+    def unknown(self) -> Unknown | None:
+        """The unknown that acts in set 3, or is to."""
+        return self.released[self.acting] if self.released else None
+
+    @property
+    def in_thesis(self) -> bool:
+        """True if texts follow the thesis' convention, p = (Δ − Δ₀) / Δ₁, not the textbook's."""
+        return self._view.convention == THESIS
+
+    @property
+    def shown_now(self) -> tuple[object, ...]:
+        return (*super().shown_now, self.in_thesis, len(self.released))
+
+    @property
+    def tables(self) -> ForceTables:
         """The tables of the solution."""
         assert self.solution is not None
-        return Tables(self.model, self.solution)
+        return ForceTables(self.model, self.solution)
 
     @property
     def clamp_wanted(self) -> bool:
@@ -176,9 +226,7 @@ class Guide:
         known = self.sets[0].model.settings if released else None  # a person may have chosen its scale
         copy.settings.displacement_scale = known.prescribed_displacement_scale if known is not None else None
         if bends(self.model):
-            view = view_like(self._view)
-            view.all_diagrams, view.quantity = True, self.quantity
-            return Set(still(copy, self.model, state), view)
+            return self._still(copy, state)
         live = RealTimeRunner(Simulation(copy, self._schedule, "force method"))
         made = Set(copy, view_like(self._view), live)
         made.scale_to(state)
@@ -192,18 +240,7 @@ class Guide:
 
     @property
     def running(self) -> list[Set]:
-        """The sets that move in this part."""
         return {1: self.sets[:1], 3: self.sets[1:2], 5: self.sets[2:3], 7: self.sets[2:3]}.get(self.part, [])
-
-    @property
-    def shown(self) -> list[Set | Mechanism]:
-        """The structures in the picture, from left to right."""
-        return [*self.sets, self.mechanism] if self.mechanism is not None else [*self.sets]
-
-    @property
-    def moving(self) -> list[Set | Mechanism]:
-        """The structures that frames change."""
-        return [one for one in (*self.running, self.mechanism) if one is not None and one.moves]
 
     # --- going on ----------------------------------------------------------------------------------
 
@@ -223,13 +260,34 @@ class Guide:
         self.part += 1
         if self.part == PARTS and self.acting < len(self.released) - 1:
             self.acting, self.part = self.acting + 1, 5
-        if self.part == 5 and self.solution is not None:
-            alone = [float(number == self.acting) for number in range(len(self.released))]
-            self.sets = [*self.sets[:2], self._make_set(self.released, self._times(alone), alone)]
-            self._scale_alike()
+        if self.part == 5:
+            self._act_alone()
         elif self.part == PARTS:
             self._apply_forces()
         return True
+
+    def back(self) -> None:
+        """Go back to the part before; what part 2 released is chosen again."""
+        self._forget_refusal()
+        self.axis_wanted = None
+        if self.part == 2 and self._known:
+            return
+        self.part = max(self.part - 1, 1)
+        if self.part == 4 and self.acting > self._known:
+            self.acting, self.part = self.acting - 1, 6
+        if self.part == 2:
+            del self.released[self._known :]
+            self.solution = solve(self.model, self.released) if self.released else None
+            self._show_released()
+        self.sets = self.sets[: {1: 1, 2: 1, 3: 2, 4: 2}.get(self.part, 3)]
+        if self.part == 6:
+            self._act_alone()
+
+    def _act_alone(self) -> None:
+        """A unit of the acting unknown in set 3 (parts 5 and 6)."""
+        alone = [float(number == self.acting) for number in range(len(self.released))]
+        self.sets = [*self.sets[:2], self._make_set(self.released, self._times(alone), alone)]
+        self._scale_alike()
 
     @property
     def can_release_another(self) -> bool:
@@ -284,18 +342,22 @@ class Guide:
             return
         try:
             self.solution = solve(self.model, wanted)
-        except ForceMethodError as error:
+        except MethodError as error:
             self.refusal = str(error)
             if error.motion is not None:
                 left = base_structure(self.model, wanted)
                 self.mechanism = Mechanism(left, error.motion, view_like(self._view))
             return
         self.released, self.axis_wanted = wanted, None
-        first = self.sets[0].model  # in which the released elements are drawn as selected
-        tables: dict[str, Table[Any]] = first.tables
-        first.tag_only([tables[one.element.table][one.element.name] for one in wanted], Selected)
+        self._show_released()
         if len(wanted) == self.count.degree:
             self._release()
+
+    def _show_released(self) -> None:
+        """Draw the released elements as selected in set 1."""
+        first = self.sets[0].model
+        tables: dict[str, Table[Any]] = first.tables
+        first.tag_only([tables[one.element.table][one.element.name] for one in self.released], Selected)
 
     def _release(self) -> None:
         """Go on with what was picked (part 2 → part 3)."""

@@ -5,23 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from reportlab.platypus import Flowable, KeepTogether
 
 from pinjoint.components import written
 from pinjoint.components.bent import AXIAL, MOMENT
-from pinjoint.components.language import listed, tr
+from pinjoint.components.language import listed, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import supported
 from pinjoint.components.rod import nodes, rigid_joints
 from pinjoint.components.view import THESIS, Cut
 from pinjoint.figures import diagram_titles, figure, in_a_row, printed, signs
-from pinjoint.force_method import index, words
-from pinjoint.force_method.copies import base_structure, loaded, still, unloaded
-from pinjoint.force_method.tables import PRODUCTS, Tables
-from pinjoint.force_method.words import EXACT
+from pinjoint.methods import displacement_words, index, words
+from pinjoint.methods.copies import base_structure, held, loaded, still, unloaded
+from pinjoint.methods.displacements import DisplacementTables
+from pinjoint.methods.tables import PRODUCTS, ForceTables, Tables
+from pinjoint.methods.words import EXACT
 from pinjoint.systems.render.backends.paper import (
     GUTTER,
     LAYOUTS,
@@ -32,15 +33,19 @@ from pinjoint.systems.render.backends.paper import (
     in_rows,
     matrices,
 )
+from pinjoint.systems.statics import displacement_method
 from pinjoint.systems.statics.counting import Count
 from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.external import External
-from pinjoint.systems.statics.force_method import SetState
+from pinjoint.systems.statics.force_method import Solution
+from pinjoint.systems.statics.superposition import SetState
 from pinjoint.systems.statics.unknowns import Unknown
+from pinjoint.tables import Table
 
 _NOTHING = 1e-9  # kN: of axial forces, which beams have none of
 _TERMS = 6  # of a sum that are written one by one
 _SHOWN = 2  # unknowns of a frame up to which each has a column of superposition
+_MOST, _WIDEST = 6, 9  # unknowns with figures and sums of entries, with K
 _BESIDE = 26  # rows of a table that stands beside others
 _APART = ",\u2003"  # between formulas in a line
 
@@ -57,13 +62,12 @@ def _title(model: Model) -> str:
 
 def contents(solved: Tables, convention: str, layout: Layout = LAYOUTS[0]) -> list[Flowable]:
     """What the report of a solution consists of, from the top to the bottom."""
-    page = _Page(solved, layout)
-    theory = tr("Force method, by first-order theory: linear elastic, equilibrium about the original shape.")
+    page = _ForcePage(solved, layout) if isinstance(solved, ForceTables) else _DisplacementPage(solved, layout)
     return [
         layout.text(_title(solved.model), "title"),
-        *(layout.text(line, "subtitle") for line in (theory, signs(solved.model))),
+        *(layout.text(line, "subtitle") for line in (tr(page.theory), signs(solved.model))),
         *page.structure(),
-        *(page.of_thesis() if convention == THESIS else page.working()),
+        *(page.of_thesis() if convention == THESIS and isinstance(page, _ForcePage) else page.working()),
         *page.forces(),
         *page.checks(),
     ]
@@ -101,7 +105,10 @@ def _flowing(heading: Sequence[Flowable], blocks: Sequence[Block], rows: int) ->
 
 
 class _Page:
-    """The sections of a report in a layout."""
+    """The sections of a report in a layout that all methods have. same: that statics gives the same forces; and moments."""
+
+    theory: ClassVar[str]
+    same: ClassVar[tuple[str, str]]
 
     def __init__(self, solved: Tables, layout: Layout) -> None:
         self.solved, self.layout = solved, layout
@@ -113,6 +120,82 @@ class _Page:
 
     def _text(self, words: str, style: str = "text") -> Flowable:
         return self.layout.text(words, style)
+
+    def structure(self) -> list[Flowable]:
+        """The structures in figures, and what the unknowns are."""
+        raise NotImplementedError
+
+    def working(self) -> list[Flowable]:
+        """The equations and how they come about."""
+        raise NotImplementedError
+
+    def _closing(self) -> list[Flowable]:
+        """How the equations hold with the unknowns."""
+        raise NotImplementedError
+
+    def forces(self) -> list[Flowable]:
+        """Superposition, and the forces in the real structure."""
+        model, solved = self.model, self.solved
+        figures = [
+            figure(
+                self.layout,
+                still(base_structure(model, []), model, self.solution.superposed),
+                title,
+                diagrams=quantity,
+            )
+            for quantity, title in diagram_titles().items()
+            if (self._pulls if quantity == AXIAL else solved.bends)
+        ]
+        heading = [self._text(tr("4  Forces in the structure"), "heading")]
+        most = _SHOWN if solved.bends else PRODUCTS
+        kinds = [solved.moments(most)] if solved.bends else []
+        kinds += [solved.axial_forces(most)] if self._pulls else []
+        kinds.append(solved.reactions(most))
+        tables = [block for table in kinds for block in printed(self.layout, table, without_last=True)]
+        beside = tables[1:] if solved.bends else [*tables[1:], *figures]
+        if self._rows <= _BESIDE and sum(width for width, _ in (tables[0], *beside)) > WIDTH - 2 * GUTTER:
+            below = (max(width for width, _ in beside), [part for _, parts in beside for part in parts])
+            tables, figures = [tables[0], below], figures if solved.bends else []
+        return _flowing(heading, [*tables, *figures], max(len(table.names) for table in kinds))
+
+    def checks(self) -> list[Flowable]:
+        """Equilibrium of the whole, the equations, and the difference from linear theory."""
+        solution = self.solution
+        whole, real = solution.superposed, solution.real
+        balance = [
+            self._text(tr("Equilibrium of the whole structure (kN, kN·m):")),
+            *(
+                self._text(f"{name} = {written.total(terms)}", "equation")
+                for name, terms in _balance(self.model, whole)
+            ),
+        ]
+        gaps = self._closing()
+        size = largest(real.axial_force)
+        off = written.force(largest(whole.axial_force - real.axial_force), nothing=_same(size))
+        said = tr(self.same[0], force=off)
+        if self.solved.bends:
+            moment = largest(real.end_moment)
+            turned = written.moment(largest(whole.end_moment - real.end_moment), nothing=_same(moment))
+            said = tr(self.same[1], force=off, moment=turned)
+        gaps.append(self._text(said))
+        heading = self._text(tr("5  Checks"), "heading")
+        return [KeepTogether([heading, *in_rows([(0.0, balance), (0.0, gaps)])])]
+
+
+class _ForcePage(_Page):
+    """Of the force method."""
+
+    solved: ForceTables
+    solution: Solution
+    theory = marked(
+        "Force method, by first-order theory: linear elastic, equilibrium about the original shape."
+    )
+    same = (
+        marked("The displacement method gives the same axial forces: largest difference {force}."),
+        marked(
+            "The displacement method gives the same forces and moments: largest differences {force}, {moment}."
+        ),
+    )
 
     def structure(self) -> list[Flowable]:
         """The real structure, the released one under the load and each unknown, and how often it is indeterminate."""
@@ -248,62 +331,107 @@ class _Page:
         heading = self._text(tr("2  Unknowns"), "heading")
         return [KeepTogether([heading, *(self._text(line, "equation") for line in lines)])]
 
-    def forces(self) -> list[Flowable]:
-        """Superposition, and the forces in the real structure."""
-        model, solved = self.model, self.solved
-        figures = [
-            figure(
-                self.layout,
-                still(base_structure(model, []), model, self.solution.superposed),
-                title,
-                diagrams=quantity,
-            )
-            for quantity, title in diagram_titles().items()
-            if (self._pulls if quantity == AXIAL else solved.bends)
-        ]
-        heading = [self._text(tr("4  Forces in the structure"), "heading")]
-        most = _SHOWN if solved.bends else PRODUCTS
-        kinds = [solved.moments(most)] if solved.bends else []
-        kinds += [solved.axial_forces(most)] if self._pulls else []
-        kinds.append(solved.reactions(most))
-        tables = [block for table in kinds for block in printed(self.layout, table, without_last=True)]
-        beside = tables[1:] if solved.bends else [*tables[1:], *figures]
-        if self._rows <= _BESIDE and sum(width for width, _ in (tables[0], *beside)) > WIDTH - 2 * GUTTER:
-            below = (max(width for width, _ in beside), [part for _, parts in beside for part in parts])
-            tables, figures = [tables[0], below], figures if solved.bends else []
-        return _flowing(heading, [*tables, *figures], max(len(table.names) for table in kinds))
-
-    def checks(self) -> list[Flowable]:
-        """Equilibrium of the whole, the gaps left, and the difference from linear theory."""
+    def _closing(self) -> list[Flowable]:
         solution = self.solution
-        whole, real = solution.superposed, solution.real
-        balance = [
-            self._text(tr("Equilibrium of the whole structure (kN, kN·m):")),
-            *(
-                self._text(f"{name} = {written.total(terms)}", "equation")
-                for name, terms in _balance(self.model, whole)
-            ),
-        ]
         gaps = [self._text(tr("The compatibility equations hold ({units}):", units=self.solved.units))]
         for i in self._every[:PRODUCTS]:
             terms = [solution.gap[i], *(solution.flexibility[i] * solution.force), -solution.prescribed[i]]
             gaps.append(
                 self._text(written.total(self.solved.factor * float(term) for term in terms), "equation")
             )
-        size = largest(real.axial_force)
-        off = written.force(largest(whole.axial_force - real.axial_force), nothing=_same(size))
-        said = tr("The displacement method gives the same axial forces: largest difference {force}.", force=off)
-        if self.solved.bends:
-            moment = largest(real.end_moment)
-            turned = written.moment(largest(whole.end_moment - real.end_moment), nothing=_same(moment))
-            said = tr(
-                "The displacement method gives the same forces and moments: largest differences {force}, {moment}.",
-                force=off,
-                moment=turned,
+        return gaps
+
+
+class _DisplacementPage(_Page):
+    """Of the displacement method."""
+
+    solved: DisplacementTables
+    solution: displacement_method.Solution
+    theory = marked(
+        "Displacement method, by first-order theory: linear elastic, equilibrium about the original shape."
+    )
+    same = (
+        marked("Statics gives the same axial forces: largest difference {force}."),
+        marked("Statics gives the same forces and moments: largest differences {force}, {moment}."),
+    )
+
+    def structure(self) -> list[Flowable]:
+        model, solution, layout, count = self.model, self.solution, self.layout, len(self._every)
+        quantity, symbol = (MOMENT, "M") if self.solved.bends else (AXIAL, "N")
+        nothing = SetState.superposed([solution.real], [0.0])
+        blocks = [
+            figure(
+                layout,
+                still(base_structure(model, []), model, nothing),
+                tr("The structure, its supports and its loads"),
             )
-        gaps.append(self._text(said))
-        heading = self._text(tr("5  Checks"), "heading")
-        return [KeepTogether([heading, *in_rows([(0.0, balance), (0.0, gaps)])])]
+        ]
+        fast = held(base_structure(model, []), solution)
+        caption = tr(
+            "All unknowns held, under the load: {force} ({unit})",
+            force=f"{symbol}₀",
+            unit="kN·m" if self.solved.bends else "kN",
+        )
+        blocks.append(figure(layout, still(fast, model, solution.base), caption, diagrams=quantity))
+        for i in self._every if count <= _MOST else ():
+            copy = still(held(unloaded(model, []), solution), model, solution.units[i], moved=True)
+            said = tr(
+                "{unknown} = 1 alone: {force}",
+                unknown=f"Δ{index(i + 1)}",
+                force=f"{symbol.lower()}{index(i + 1)}",
+            )
+            blocks.append(figure(layout, copy, said, diagrams=quantity, has_units=False, moved=True))
+        degree = Count.of(model)
+        unknowns = ",  ".join(displacement_words.unknown(self.solved, i) for i in self._every)
+        lines = [self._text(line) for line in (*displacement_words.degree_of(count, degree), unknowns)]
+        blocks.append((WIDTH if count > 1 else 0.0, lines))
+        return _flowing([self._text(tr("1  Structure and unknowns"), "heading")], blocks, 0)
+
+    def working(self) -> list[Flowable]:
+        solved, layout, rods, every = self.solved, self.layout, self.model.rods, self._every
+        members = printed(layout, solved.coefficients())
+        for row in range(rods.count) if rods.count <= PRODUCTS else ():
+            members += printed(layout, solved.member(row))
+        found = _flowing([self._text(tr("2  Stiffness of the members"), "heading")], members, rods.count)
+        if not every:
+            return found
+        heading = [self._text(tr("3  Equilibrium of the joints"), "heading")]
+        blocks: list[Block] = []
+        if len(every) <= _MOST:
+            pairs = [(i, j) for i in every for j in every if i <= j and solved.terms(i, j)]
+            names, added, sums = zip(*(displacement_words.entry(solved, i, j) for i, j in pairs), strict=True)
+            texts = {tr("members"): added, tr("sum"): sums}
+            blocks = printed(layout, solved.column(len(every)))
+            blocks += printed(layout, Table("K", names, []), texts=texts)
+        return [*found, *_flowing(heading, blocks, len(every) ** 2), *self._system()]
+
+    def _system(self) -> list[Flowable]:
+        """K Δ = F with its numbers, and Δ."""
+        solution, every = self.solution, self._every
+        number = np.vectorize(lambda value: written.number(value, EXACT), otypes=[object])
+        amounts = _APART.join(displacement_words.amount(self.solved, i).replace(" ", "\u00a0") for i in every)
+        result = self._text(amounts, "result")
+        if len(every) > _WIDEST:
+            return [
+                self._text(tr("With more than {count} unknowns K is not printed.", count=_WIDEST), "caption"),
+                result,
+            ]
+        symbols = [[f"Δ{index(i + 1)}"] for i in every]
+        line = matrices(
+            [number(solution.stiffness), symbols, "=", [[x] for x in number(solution.load)]], self.layout
+        )
+        amounts = _APART.join(displacement_words.amount(self.solved, i).replace(" ", "\u00a0") for i in every)
+        said = tr(
+            "K Δ = F ({units}); K is symmetric (Maxwell):",
+            units="m, rad, kN, kN·m" if self.solved.bends else "m, kN",
+        )
+        return [KeepTogether([self._text(said), *in_rows([line]), result])]
+
+    def _closing(self) -> list[Flowable]:
+        left = written.number(self.solved.unbalanced)
+        return [
+            self._text(tr("Equilibrium of all joints: what is left to hold them is {force} kN.", force=left))
+        ]
 
 
 def _same(size: float) -> float:
@@ -330,7 +458,7 @@ def _counted(solved: Tables) -> str:
     )
 
 
-def _formulas(solved: Tables, *, pulls: bool) -> Iterator[str]:
+def _formulas(solved: ForceTables, *, pulls: bool) -> Iterator[str]:
     """What the sums are, for every pair of unknowns alike; pulls: there are axial forces."""
     work, bends = solved.solution.work, solved.bends
     more = ["Σ n₁ ΔL"] * bool(work.axial.of_free.any()) + ["∫ m₁ κ dx"] * bool(work.bending.of_free.any())
