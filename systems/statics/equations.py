@@ -653,8 +653,10 @@ class Structure:
 
     def _turned(self, parts: Array) -> Array:
         """Matrices of rods, (rods, 2 × width, 2 × width), of the coordinates along the axes of supports."""
-        parts = self._by_supports(parts.reshape(len(self.ends), 2 * self.width, -1), self.ends)
-        return self._by_supports(parts.swapaxes(1, 2), self.ends)
+        parts = parts.reshape(len(self.ends), 2 * self.width, 2 * self.width)
+        if not self.angle.any():
+            return parts
+        return self._by_supports(self._by_supports(parts, self.ends).swapaxes(1, 2), self.ends)
 
     def _by_supports(self, by_ends: Array, ends: Rows) -> Array:
         """Of rows (k, …, coordinates of two particles) those by their coordinates along the axes of supports."""

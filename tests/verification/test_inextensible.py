@@ -12,12 +12,13 @@ from pinjoint import Session
 from pinjoint.components.field import FieldError
 from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
+from pinjoint.systems.statics import displacement_method
 from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.force_method import solve
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.theory import Indeterminacy, influence_line, linear
-from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown
+from pinjoint.systems.statics.unknowns import MethodError, Unknown
 from tests.reference.models import CLAMPED, model, particle, rod
 from tests.verification.test_frame_theory import SEEDS, agrees, random_frame
 
@@ -150,7 +151,7 @@ def test_self_stressed_rods_are_refused_by_name() -> None:
     made = parse(model(particles, [rod(*pair, inextensible=True) for pair in pairs]))
     with pytest.raises(NoEquilibrium, match=r"axial forces of rods AB, BC, CD, DA, AC and 1 more.*self-stress"):
         linear(made)
-    with pytest.raises(ForceMethodError, match="self-stress"):
+    with pytest.raises(MethodError, match="self-stress"):
         solve(made, [Unknown.named(made, "AC")])
     made.rods["BD"].inextensible = False
     found = linear(made)
@@ -195,5 +196,10 @@ def test_menus_mark_rods_and_pictures_show_it() -> None:
     session.act("toggle inextensible")
     assert all(one.inextensible for one in session.rods)
     session.press("q")
-    assert session.statics
+    assert session.scene == "statics"
     assert math.isfinite(session.rods["AB"].axial_force)
+
+
+def test_the_displacement_method_refuses_them_by_name() -> None:
+    with pytest.raises(MethodError, match="but rod AB counts as inextensible"):
+        displacement_method.solve(portal())
