@@ -13,15 +13,16 @@ from numpy.typing import NDArray
 
 from pinjoint.components.derived import (
     all_slopes,
-    along_and_across,
     chord_rotation,
     cubic,
     moments_along,
+    on_axis,
     own_slopes,
     rigid_slopes,
 )
 from pinjoint.components.model import Model
 from pinjoint.components.settings import DIAGRAMS
+from pinjoint.components.spans import Curves, Kinks, Stretches, extremes
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
@@ -31,8 +32,6 @@ FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn 
 _MOST_PIECES = 32  # of a drawn rod
 _LARGEST = 1e6  # pieces that a rod would have to be cut into; such are left out
 _STEEP, _STEEPEST = 0.05, 2.5  # rad, slopes from which on tangents are drawn truly, and up to which
-# Between which a zero of a polynomial is looked for, and the shares that are one to it.
-_SAMPLES, _ROUNDING = 33, 2e-16
 
 
 @dataclass(frozen=True)
@@ -54,30 +53,30 @@ class Parts:
 class Axes:
     """The axes of some rods as drawn (m): chords, unit vectors to their left, and by how much they bend away there.
 
-    start, end, left: (n, 2). bow: polynomials (n, 5), the present deflection × displacement scale. drift: likewise by how
+    start, end, left: (n, 2). bow: the present deflection × displacement scale. drift: likewise by how
     much their points move along the chords, which lets strongly bent rods leave joints in the right direction; None: not.
     """
 
     start: Array
     end: Array
     left: Array
-    bow: Array
-    drift: Array | None = None
+    bow: Curves
+    drift: Curves | None = None
 
     @classmethod
     def of(cls, model: Model, rows: Rows, scale: float | None = None) -> Axes:
         """The axes of some rods, as they are drawn, or with displacements to another scale.
 
-        Cubics by the slopes of their ends, and what a distributed force adds between: q ξ²(1 − ξ)² L₀⁴/24EI across. In small
-        displacements both together are exact.
+        Cubics by the slopes of their ends, and what acts between them adds, as if they were clamped. In small displacements
+        both together are exact.
         """
         rods, state = model.rods, _state(model, rows)
         particles, scale = model.particles, drawn_scale(model) if scale is None else scale
         ends = rods.between[rows].astype(np.intp)
         drawn = particles.position[ends] + particles.displacement[ends] * scale
         drift = _drift(state)
-        drift = None if drift is None else scale * drift
-        return cls(drawn[:, 0], drawn[:, 1], state.left, scale * (state.cubic + state.sag), drift)
+        drift = None if drift is None else drift.times(scale)
+        return cls(drawn[:, 0], drawn[:, 1], state.left, state.bow.times(scale), drift)
 
     @classmethod
     def moved(cls, parts: Parts, places: Array, displacement: Array, rotation: Array) -> Axes:
@@ -92,12 +91,12 @@ class Axes:
         chord = ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * left).sum(axis=1)
         turned = length[:, None] * rotation[ends] - chord[:, None]
         slopes = np.einsum("rij,rj->ri", own_slopes(parts.fixity), turned)
-        return cls(places[ends[:, 0]], places[ends[:, 1]], left, _cubic(*slopes.T))
+        return cls(places[ends[:, 0]], places[ends[:, 1]], left, Curves.plain(cubic(*slopes.T)))
 
     def some(self, which: Rows | NDArray[np.bool_]) -> Axes:
         """Those of some of the rods."""
-        drift = None if self.drift is None else self.drift[which]
-        return Axes(self.start[which], self.end[which], self.left[which], self.bow[which], drift)
+        drift = None if self.drift is None else self.drift.some(which)
+        return Axes(self.start[which], self.end[which], self.left[which], self.bow.some(which), drift)
 
     def points(self, shares: Array) -> Array:
         """Points at shares (k,) or (n, k), shape (n, k, 2)."""
@@ -108,23 +107,23 @@ class Axes:
 
     def tangents(self, shares: Array) -> Array:
         """Their directions at shares (k,) or (n, k), not of unit length, shape (n, k, 2)."""
-        drift = None if self.drift is None else derivative(self.drift)
-        found: Array = (self.end - self.start)[:, None] + self._away(derivative(self.bow), drift, shares)
+        drift = None if self.drift is None else self.drift.derivative
+        found: Array = (self.end - self.start)[:, None] + self._away(self.bow.derivative, drift, shares)
         return found
 
-    def _away(self, bow: Array, drift: Array | None, shares: Array) -> Array:
-        found: Array = values(bow, shares)[..., None] * self.left[:, None]
+    def _away(self, bow: Curves, drift: Curves | None, shares: Array) -> Array:
+        found: Array = bow.at(shares)[..., None] * self.left[:, None]
         if drift is not None:
             ahead = np.stack([self.left[:, 1], -self.left[:, 0]], axis=1)
-            found = found + values(drift, shares)[..., None] * ahead[:, None]
+            found = found + drift.at(shares)[..., None] * ahead[:, None]
         return found
 
     @property
     def curvature(self) -> Array:
         """Into how many pieces each would have to be cut to be straight within a metre, (n,); a root of a length."""
-        second = np.abs(derivative(derivative(self.bow))).sum(axis=1)
+        second = self.bow.derivative.derivative.most
         if self.drift is not None:
-            second += np.abs(derivative(derivative(self.drift))).sum(axis=1)
+            second = second + self.drift.derivative.derivative.most
         most: Array = np.sqrt(second / 8.0)
         return most
 
@@ -165,24 +164,13 @@ def deflected(model: Model, row: int, shares: Array) -> tuple[Array, Array]:
     slopes there to it (k,).
     """
     state = _state(model, np.array([row]))
-    bow = state.cubic + state.sag
-    slopes = values(derivative(bow), shares)[0]
-    return values(bow, shares).T * state.left, slopes / max(float(state.length[0]), 1e-300)
+    slopes = state.bow.derivative.at(shares)[0]
+    return state.bow.at(shares).T * state.left, slopes / max(float(state.length[0]), 1e-300)
 
 
-def deflections(model: Model, rows: Rows) -> Array:
-    """How far the axes of some rods are from their chords now (m), to the left, as polynomials (n, 5)."""
-    state = _state(model, rows)
-    return state.cubic + state.sag
-
-
-def displacements(model: Model, rows: Rows) -> Array:
-    """How far points of the axes of some rods have moved (m), as polynomials of x and y, (n, 2, 5)."""
-    state, (start, end) = _state(model, rows), model.particles.displacement[model.rods.between[rows].T]
-    found: Array = state.left[..., None] * (state.cubic + state.sag)[:, None]
-    found[..., 0] += start
-    found[..., 1] += end - start
-    return found
+def deflections(model: Model, rows: Rows) -> Curves:
+    """How far the axes of some rods are from their chords now (m), to the left."""
+    return _state(model, rows).bow
 
 
 class Station(NamedTuple):
@@ -201,9 +189,13 @@ class Station(NamedTuple):
         rows, rods = np.array([row]), model.rods
         length = float((rods.original_length if model.first_order else rods.length)[row])
         at = np.array([min(distance / length, 1.0) if length > 0.0 else 0.0])
-        forces = {name: float(values(inner_forces(model, rows, name), at)[0, 0]) for name in DIAGRAMS}
-        moved = values(displacements(model, rows)[0], at)[:, 0]
-        rotation = chord_rotation(model)[row] + deflected(model, row, at)[1][0]
+        forces = {name: float(inner_forces(model, rows, name).at(at)[0, 0]) for name in DIAGRAMS}
+        (start, end), (aside, slope) = (
+            model.particles.displacement[rods.between[row]],
+            deflected(model, row, at),
+        )
+        moved = start + at[0] * (end - start) + aside[0]
+        rotation = chord_rotation(model)[row] + slope[0]
         return cls(float(at[0]) * length, forces, moved, float(rotation))
 
 
@@ -211,51 +203,56 @@ def farthest(model: Model, rows: Rows) -> tuple[Array, Array]:
     """The largest displacement (m) along each of some rods, and the share where it is, (n,) each."""
     if not rows.size:  # for the state of all rods, of which nothing is asked: half of a picture of 100 000
         return np.zeros(0), np.zeros(0)
-    moved = displacements(model, rows)
-    squares = np.zeros((len(moved), 9))
-    for power in range(5):
-        squares[:, power : power + 5] += (moved[..., power, None] * moved).sum(axis=1)
-    found, shares = extremes(squares)
+    state, (start, end) = _state(model, rows), model.particles.displacement[model.rods.between[rows].T]
+    row, low, high, bow = state.bow.stretches
+    moved = state.left[row, :, None] * bow[:, None]
+    moved[..., 0] += start[row]
+    moved[..., 1] += (end - start)[row]
+    terms = moved.shape[2]
+    squares = np.zeros((len(row), 2 * terms - 1))
+    for power in range(terms):
+        squares[:, power : power + terms] += (moved[..., power, None] * moved).sum(axis=1)
+    found, shares = extremes(Stretches(row, low, high, squares))
     return np.sqrt(found[:, 1]), shares[:, 1]
 
 
-def _drift(state: _State) -> Array | None:
+def _drift(state: _State) -> Curves | None:
     """How far points move along the chords, so that ends with slopes φ lie at angles φ to them, not arctan φ."""
     length = state.length
-    slopes = state.cubic[:, [1, 3]] / np.where(length > 0.0, length, 1.0)[:, None]
-    slopes[:, 1] -= slopes[:, 0]  # the cubic has φ_s and φ_s + φ_e
+    slopes = state.slopes / np.where(length > 0.0, length, 1.0)[:, None]
     steep = np.clip(np.abs(slopes), 0.0, _STEEPEST)
     if not (steep > _STEEP).any():
         return None
     shorter = np.where(steep > _STEEP, steep / np.tan(np.maximum(steep, _STEEP)) - 1.0, -(steep**2) / 3.0)
-    return length[:, None] * _cubic(*shorter.T)
-
-
-def _cubic(start: Array, end: Array) -> Array:
-    """The deflection (n, 5) between ends with slopes × length (n,)."""
-    return np.pad(cubic(start, end), ((0, 0), (0, 1)))
+    return Curves.plain(length[:, None] * cubic(*shorter.T))
 
 
 class _State(NamedTuple):
-    """Of some rods: length, unit vector to the left, force across, deflections (n, 5): by slopes, and by that force."""
+    """Of some rods: length, unit vector to the left, slopes of the ends × length (n, 2), and deflections."""
 
     length: Array
     left: Array
-    across: Array
-    cubic: Array
-    sag: Array
+    slopes: Array
+    bow: Curves
 
 
 def _state(model: Model, rows: Rows) -> _State:
+    length, left, slopes, bow = _states(model)[0]
+    return _State(length[rows], left[rows], slopes[rows], bow.some(rows))
+
+
+def _states(model: Model) -> tuple[_State, Kinks]:
+    """Those of all rods, and what acts between their ends."""
     revision, found = model.bent
     if revision != model.revision:  # a picture asks nine times
         with np.errstate(invalid="ignore"):  # of rods whose ends are nowhere, which are not drawn
-            found = _states(model)
+            found = _found(model)
         model.bent = model.revision, found
-    return _State(*(column[rows] for column in found))
+    known: tuple[_State, Kinks] = found
+    return known
 
 
-def _states(model: Model) -> _State:
+def _found(model: Model) -> tuple[_State, Kinks]:
     rods, particles = model.rods, model.particles
     first, second = rods.between.astype(np.intp).T
     present = rods.difference
@@ -264,92 +261,37 @@ def _states(model: Model) -> _State:
     length = np.hypot(present[:, 0], present[:, 1])
     along = present / np.where(length > 0.0, length, 1.0)[:, None]
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    across = along_and_across(model.share * rods.distributed_force, along)[1]
+    between = Kinks.of(model, model.share)
     rigid = rigid_slopes(rods, particles.rotation[rods.between], chord_rotation(model))
-    start, end = (length[:, None] * all_slopes(rods, rigid, across)).T
-    bent, zero = rods.bending_stiffness > 0.0, np.zeros(rods.count)
-    sag = np.divide(across * rods.rest_length**4, 24.0 * rods.bending_stiffness, out=zero.copy(), where=bent)
-    cubic = _cubic(start, end)
-    cubic[~bent] = 0.0
-    return _State(length, left, across, cubic, np.stack([zero, zero, sag, -2.0 * sag, sag], axis=1))
+    slopes = all_slopes(rods, rigid, on_axis(between.on_clamped(rods.rest_length), along)[1])
+    slopes = np.where((rods.bending_stiffness > 0.0)[:, None], length[:, None] * slopes, 0.0)
+    bow = between.sags(left, rods.rest_length, rods.bending_stiffness).plus(cubic(*slopes.T))
+    return _State(length, left, slopes, bow), between
 
 
-def inner_forces(model: Model, rows: Rows, quantity: str) -> Array:
-    """N, V (kN) or M (kN·m) along some rods as polynomials; at their ends the computed columns.
+def inner_forces(model: Model, rows: Rows, quantity: str) -> Curves:
+    """N, V (kN) or M (kN·m) along some rods; at their ends the computed columns.
 
-    M as in `moments_along`, with the force q across and, but for first-order theory, the cubic deflection v.
+    M as in `moments_along`, with what acts between the ends and, but for first-order theory, the cubic deflection v.
     """
-    rods, state = model.rods, _state(model, rows)
+    rods, (state, between) = model.rods, _states(model)
     name = {AXIAL: "end_axial_force", SHEAR: "shear", MOMENT: "bending_moment"}[quantity]
-    ends = getattr(rods, name)[rows]
-    if quantity != MOMENT:
-        return np.stack([ends[:, 0], ends[:, 1] - ends[:, 0]], axis=1)
-    load = state.across * rods.rest_length[rows] * state.length
-    by_deflection = 0.0 if model.first_order else rods.axial_force[rows, None]
-    return moments_along(ends, load, by_deflection * state.cubic[:, :4])
-
-
-def zeros(polynomials: Array) -> tuple[Rows, Array]:
-    """Where polynomials (n, d) change sign between 0 and 1: which one, and at which share, in order."""
-    samples = np.linspace(0.0, 1.0, _SAMPLES)
-    sampled = values(polynomials, samples)
-    signs = np.sign(sampled)
-    which, place = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0.0)
-    low, high = samples[place], samples[place + 1]
-    before, slopes, step = signs[which, place], derivative(polynomials), 0.5 * (high - low)
-    with np.errstate(over="ignore", invalid="ignore"):  # of numbers beyond computing
-        part = sampled[which, place] / (sampled[which, place] - sampled[which, place + 1])
-    share = low + (high - low) * np.nan_to_num(part, nan=0.5)
-    # From where a straight line is zero, Newton's method, or half the interval where that is less: down to rounding.
-    for _ in range(60):
-        value = values(polynomials[which], share[:, None])[:, 0]
-        low, high = np.where(value * before > 0.0, share, low), np.where(value * before > 0.0, high, share)
-        slope = values(slopes[which], share[:, None])[:, 0]
-        newton = -np.divide(value, slope, out=np.full(len(value), np.inf), where=slope != 0.0)
-        safe = (share + newton >= low) & (share + newton <= high) & (np.abs(newton) < 0.5 * np.abs(step))
-        step = np.where(safe | (np.abs(newton) < _ROUNDING), newton, 0.5 * (low + high) - share)
-        if not (np.abs(step) >= _ROUNDING).any():
-            break
-        share = share + step
-    touching, at = np.nonzero(signs[:, 1:-1] == 0.0)  # a sample that is a zero itself
-    touching, at = (part[signs[touching, at] * signs[touching, at + 2] < 0.0] for part in (touching, at))
-    which, shares = np.concatenate([which, touching]), np.concatenate([share, samples[at + 1]])
-    order = np.lexsort((shares, which))
-    return which[order], shares[order]
-
-
-def extremes(polynomials: Array) -> tuple[Array, Array]:
-    """The least and the greatest value of polynomials (n, d) from 0 to 1, and the shares where they are, (n, 2) each."""
-    count = len(polynomials)
-    which, inside = zeros(derivative(polynomials))
-    which = np.concatenate([np.arange(count), np.arange(count), which])
-    shares = np.concatenate([np.zeros(count), np.ones(count), inside])
-    found = values(polynomials[which], shares[:, None])[:, 0]
-    order = np.lexsort((found, which))
-    both = order[np.searchsorted(which[order], np.arange(count)[:, None] + [0, 1]) - [0, 1]]
-    return found[both], shares[both]
-
-
-def values(polynomials: Array, shares: Array) -> Array:
-    """Values of polynomials (n, d) at shares (k,) or (n, k), shape (n, k)."""
-    found = np.zeros((len(polynomials), np.shape(shares)[-1]))
-    for coefficient in polynomials.T[::-1]:
-        found = found * shares + coefficient[:, None]
-    return found
-
-
-def derivative(polynomials: Array) -> Array:
-    """Of polynomials (n, d), by ξ, (n, d − 1)."""
-    found: Array = polynomials[:, 1:] * np.arange(1.0, polynomials.shape[1])
-    return found
+    ends = getattr(rods, name)
+    if quantity == MOMENT:
+        thrust = 0.0 if model.first_order else rods.axial_force[:, None]
+        found = moments_along(ends, between, state.left, state.length, thrust * cubic(*state.slopes.T))
+        return found.some(rows)
+    x, y = state.left[between.row].T
+    across = between.size[:, 0] * x + between.size[:, 1] * y
+    size = across if quantity == SHEAR else between.size[:, 1] * x - between.size[:, 0] * y
+    return between.integrated(1, size, rods.count, 3).plus(ends[:, :1]).some(rows)
 
 
 def largest_sag(model: Model) -> float:
     """The largest deflection of a rod from the straight line between its ends (m), about."""
     if not is_frame(model):
         return 0.0
-    state = _state(model, np.flatnonzero(model.rods.bending_stiffness > 0.0))
-    middle = values(state.cubic + state.sag, np.array([0.5]))
+    middle = deflections(model, np.flatnonzero(model.rods.bending_stiffness > 0.0)).at(np.array([0.5]))
     return float(np.abs(middle[np.isfinite(middle)]).max(initial=0.0))
 
 
@@ -382,10 +324,9 @@ def curved_lines(model: Model, fineness: float, rows: Rows | None = None) -> Lin
     return Axes.of(model, rows).pieces(rows, fineness)
 
 
-def distributed_shares(model: Model) -> Array:
-    """What of the force (kN) on each particle is its share of forces distributed along rods, (particles, 2)."""
-    rods, found = model.rods, np.zeros((model.particles.count, 2))
-    if rods.distributed_force.any():
-        half = 0.5 * model.share * rods.distributed_force * rods.rest_length[:, None]
-        np.add.at(found, rods.between.ravel(), np.repeat(half, 2, axis=0))
+def borne_between(model: Model) -> Array:
+    """What of the force (kN) on each particle acts between the ends of rods, (particles, 2)."""
+    rods, found, between = model.rods, np.zeros((model.particles.count, 2)), Kinks.of(model, model.share)
+    if len(between.row):
+        np.add.at(found, rods.between.ravel(), between.on_ends(rods.count).reshape(-1, 2))
     return found

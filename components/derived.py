@@ -9,13 +9,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pinjoint.components.field import Column
-from pinjoint.components.load import varying
+from pinjoint.components.field import Column, Field
+from pinjoint.components.load import SpanLoad, varying
 from pinjoint.components.particle import DEFAULT_MASS
 from pinjoint.components.rod import DEFAULT_STIFFNESS
 from pinjoint.components.section import Section
+from pinjoint.components.spans import Curves, Kinks
 from pinjoint.components.table import Table
 from pinjoint.components.world import Derivation, World
+
+# What acts between the ends of rods, and where.
+_BETWEEN = " ".join(
+    [
+        *(f"rods.{name}" for name in ("distributed_force", "rest_length", "original_length")),
+        *(f"span_loads.{field.name}" for field in vars(SpanLoad).values() if isinstance(field, Field)),
+    ]
+)
 
 
 def derives(table: str, targets: str, sources: str) -> Callable[[Callable[[World], None]], Derivation]:
@@ -97,7 +106,7 @@ def masses(world: World) -> None:
 
 @derives(
     "rods",
-    "end_stiffness end_damping initial_slopes load_shares bowing turning_shares fixity",
+    "end_stiffness end_damping initial_slopes bowing turning_shares fixity",
     "bending_stiffness stiffness rest_length hinged end_springs damping bending_damping thermal_expansion"
     " temperature_gradient",
 )
@@ -116,7 +125,7 @@ def bending(world: World) -> None:
     with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
         softened = springs / np.where(springs > 0.0, springs + (3.0 * stiffness / length)[:, None], 1.0)
         fixity = np.where(springs > 0.0, softened, ~rods.hinged) * bent
-        per_slope, of_ends = by_fixity(fixity, length)
+        per_slope, of_ends = by_fixity(fixity)
         world.writable("rods.end_stiffness")[...] = (stiffness / length)[:, None] * per_slope
         damping = _or_automatic(rods.bending_damping, rods.damping * stiffness / rods.stiffness)
         world.writable("rods.end_damping")[...] = damping[:, None] * per_slope
@@ -126,18 +135,16 @@ def bending(world: World) -> None:
         world.writable(f"rods.{name}")[...] = values
 
 
-def by_fixity(fixity: Column, length: Column) -> tuple[Column, dict[str, Column]]:
+def by_fixity(fixity: Column) -> tuple[Column, dict[str, Column]]:
     """End stiffnesses per EI/L₀, (rods, 3), and the columns of these names, of rods whose ends are held so, (rods, 2)."""
     start, end = fixity.T
     both = 4.0 - start * end
-    (ss, se), (es, ee) = own = np.moveaxis(own_slopes(fixity), 0, -1)
-    area = np.einsum("ijr,i->rj", own, [1.0, -1.0]) / 12.0 * (length**2)[:, None]
+    (ss, se), (es, ee) = np.moveaxis(own_slopes(fixity), 0, -1)
     bowing = [4.0 * ss**2 - 2.0 * ss * es + 4.0 * es**2, 4.0 * ss * se - ss * ee - se * es + 4.0 * es * ee]
     bowing.append(4.0 * se**2 - 2.0 * se * ee + 4.0 * ee**2)
     shares = fixity / np.where(fixity.any(axis=1), start + end, 1.0)[:, None]
     return np.stack([12.0 * start, 6.0 * start * end, 12.0 * end], axis=1) / both[:, None], {
         "fixity": fixity,
-        "load_shares": area + 0.0,
         "bowing": np.stack(bowing, axis=1) / 30.0 + 0.0,
         "turning_shares": shares,
     }
@@ -153,6 +160,33 @@ def own_slopes(fixity: Column) -> Column:
     rows = [[start * (4.0 - end), 2.0 * (start - 1.0) * end], [2.0 * (end - 1.0) * start, end * (4.0 - start)]]
     own: Column = np.moveaxis(np.array(rows), -1, 0) / (4.0 - start * end)[:, None, None]
     return own
+
+
+@derives("rods", "span_load", f"fixity {_BETWEEN}")
+def span_loads(world: World) -> None:
+    """What acts between the ends of rods, by slopes of their joints."""
+    rods = world.tables["rods"]
+    clamped = Kinks.of(world).on_clamped(rods.rest_length)
+    world.writable("rods.span_load")[...] = on_joints(clamped, rods.fixity)
+
+
+def on_joints(clamped: Column, fixity: Column) -> Column:
+    """Work of loads by slopes of clamped ends, (rods, 7), as that by slopes of joints that hold the ends so."""
+    found = clamped.copy()
+    found[:, :6] = np.einsum("rij,rik->rjk", own_slopes(fixity), clamped[:, :6].reshape(-1, 2, 3)).reshape(
+        -1, 6
+    )
+    return found
+
+
+def on_axis(load: Column, axis: Column) -> tuple[Column, Column]:
+    """Of what acts between ends, (rods, 7): work along and across axes (rods, 2) by unit slopes of the ends, (rods, 2) each.
+
+    Couples count as across.
+    """
+    by_end = load[:, :6].reshape(-1, 2, 3)
+    x, y = axis[:, :1], axis[:, 1:]
+    return by_end[..., 0] * x + by_end[..., 1] * y, by_end[..., 1] * x - by_end[..., 0] * y + by_end[..., 2]
 
 
 @derives(
@@ -201,10 +235,10 @@ def limits(world: World) -> None:
     "particles",
     "constant_force",
     "force acceleration mass environment.force environment.acceleration"
-    " rods.distributed_force rods.between rods.rest_length loads.on loads.force loads.history",
+    f" rods.between {_BETWEEN} loads.on loads.force loads.history",
 )
 def constant_forces(world: World) -> None:
-    """Own force, environment's force, mass × accelerations (kN), constant loads, and distributed forces."""
+    """Own force, environment's force, mass × accelerations (kN), constant loads, and what rods bear between their ends."""
     particles, loads, rods = world.tables["particles"], world.tables["loads"], world.tables["rods"]
     environment = world.tables["environment"]
     constant = ~varying(loads)
@@ -212,9 +246,8 @@ def constant_forces(world: World) -> None:
         acceleration = particles.acceleration + environment.acceleration
         force = particles.force + environment.force + particles.mass[:, None] * acceleration / 1000.0
         np.add.at(force, loads.on[constant], loads.force[constant])
-        if rods.distributed_force.any():
-            half = 0.5 * rods.distributed_force * rods.rest_length[:, None]
-            np.add.at(force, rods.between.ravel(), np.repeat(half, 2, axis=0))
+        if len((between := Kinks.of(world)).row):
+            np.add.at(force, rods.between.ravel(), between.on_ends(rods.count).reshape(-1, 2))
     world.writable("particles.constant_force")[...] = force
 
 
@@ -262,13 +295,13 @@ def with_full_turns(chord: Column, turning_shares: Column, rotation: Column) -> 
 @derives(
     "rods",
     "end_axial_force shear bending_moment end_rotation largest_moment",
-    "particles.displacement particles.rotation between difference rest_length axial_force end_moment"
-    " distributed_force turning_shares load_shares bending_stiffness thermal_expansion temperature_gradient",
+    "particles.displacement particles.rotation between difference axial_force end_moment turning_shares"
+    f" {_BETWEEN} span_load bending_stiffness thermal_expansion temperature_gradient",
 )
 def present_diagrams(world: World) -> None:
     """Axial force, shear and bending moment at both ends of every rod, and the rotations of these, in the present state.
 
-    By statics, with the distributed force per original length. A hinged end turns as far as its moment is zero.
+    By statics, with distributed forces per original length. A hinged end turns as far as its moment is zero.
     """
     particles, rods = world.tables["particles"], world.tables["rods"]
     first, second = rods.between.astype(np.intp).T
@@ -276,12 +309,12 @@ def present_diagrams(world: World) -> None:
     length = np.hypot(present[:, 0], present[:, 1])
     axis = present / np.where(length > 0.0, length, 1.0)[:, None]
     rotation, forces = particles.rotation[rods.between], (rods.axial_force, rods.end_moment)
-    for name, values in diagrams(rods, axis, length, chord_rotation(world), rotation, forces).items():
+    for name, values in diagrams(world, axis, length, chord_rotation(world), rotation, forces).items():
         world.writable(f"rods.{name}")[...] = values
 
 
 def diagrams(
-    rods: Table[Any],
+    world: World,
     axis: Column,
     length: Column,
     chord: Column,
@@ -291,36 +324,32 @@ def diagrams(
     share: float = 1.0,
     first_order: bool = False,
 ) -> Mapping[str, Column]:
-    """The columns of `present_diagrams` of all rods, (rods, 2), with so much of their distributed forces.
+    """The columns of `present_diagrams` of all rods, (rods, 2), with so much of what acts between their ends.
 
     axis, length, chord: directions (rods, 2), lengths (m) and rotations (rad) of the chords; rotation: of the particles at
     both ends, (rods, 2). forces: axial (rods,), and moments on both ends, counter-clockwise (rods, 2).
     first_order: axes count as straight where forces act on them.
     """
-    axial_force, moment = forces
-    rest, bent = rods.rest_length, 0.0 if first_order else 1.0
-    tangential, transverse = along_and_across(share * rods.distributed_force, axis)
+    rods, (axial_force, moment) = world.tables["rods"], forces
+    between, bent = Kinks.of(world, share), 0.0 if first_order else 1.0
     slopes = rigid_slopes(rods, rotation, chord)
-    couple = -bent * tangential * (rods.load_shares * slopes).sum(axis=1)
+    couple = share * rods.span_load[:, 6] - bent * share * (on_axis(rods.span_load, axis)[0] * slopes).sum(
+        axis=1
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         shear = np.where(length > 0.0, (moment.sum(axis=1) + couple) / length, 0.0)
-    ahead = np.array([-0.5, 0.5])
-    slopes = all_slopes(rods, slopes, transverse)
-    bending_moment = moment * [-1.0, 1.0]
+    x, y = axis[:, :1], axis[:, 1:]
+    on_ends = between.on_ends(rods.count) * [[[-1.0], [1.0]]]
+    slopes = all_slopes(rods, slopes, on_axis(between.on_clamped(rods.rest_length), axis)[1])
+    bending_moment, left = moment * [-1.0, 1.0], np.concatenate([-y, x], axis=1)
+    thrust = (bent * axial_force * length)[:, None] * cubic(*slopes.T)
     return {
-        "end_axial_force": axial_force[:, None] - ahead * (tangential * rest)[:, None],
-        "shear": shear[:, None] + ahead * (transverse * rest)[:, None],
+        "end_axial_force": axial_force[:, None] - on_ends[..., 0] * x - on_ends[..., 1] * y,
+        "shear": shear[:, None] + on_ends[..., 1] * x - on_ends[..., 0] * y,
         "bending_moment": bending_moment,
         "end_rotation": chord[:, None] + slopes,
-        "largest_moment": _largest_moment(
-            bending_moment, slopes, bent * axial_force * length, transverse * rest * length, length
-        ),
+        "largest_moment": _largest_moment(moments_along(bending_moment, between, left, length, thrust), length),
     }
-
-
-def along_and_across(force: Column, axis: Column) -> tuple[Column, Column]:
-    """Parts of forces (rods, 2) along axes (rods, 2) and to their left, (rods,)."""
-    return (force * axis).sum(axis=1), force[:, 1] * axis[:, 0] - force[:, 0] * axis[:, 1]
 
 
 def rigid_slopes(rods: Table[Any], rotation: Column, chord: Column) -> Column:
@@ -331,13 +360,16 @@ def rigid_slopes(rods: Table[Any], rotation: Column, chord: Column) -> Column:
     return np.where(rods.turning_shares > 0.0, rotation - chord[:, None], 0.0)
 
 
-def all_slopes(rods: Table[Any], slopes: Column, transverse: Column) -> Column:
-    """Slopes of rods' own ends, by those of their joints (0 at hinges), warmth and a transverse force (kN/m)."""
+def all_slopes(rods: Table[Any], slopes: Column, load: Column) -> Column:
+    """Slopes of rods' own ends, by those of their joints (0 at hinges), warmth and what acts between clamped ends.
+
+    load: that, by unit slopes of these, (rods, 2).
+    """
     length, stiffness = rods.rest_length, rods.bending_stiffness
     bent = stiffness > 0.0
-    by_force = np.divide(transverse * length**3, 24.0 * stiffness, out=np.zeros(len(length)), where=bent)
+    loaded = np.divide(length, stiffness, out=np.zeros(len(length)), where=bent)[:, None] * load
     warped = np.where(bent, 0.5 * rods.thermal_expansion * rods.temperature_gradient * length, 0.0)
-    free = np.array([1.0, -1.0]) * (warped + by_force)[:, None]  # between hinges
+    free = np.array([1.0, -1.0]) * warped[:, None] + loaded / 3.0 - loaded[:, ::-1] / 6.0  # between hinges
     own = own_slopes(rods.fixity)
     found: Column = np.einsum("rij,rj->ri", own, slopes) + np.einsum("rij,rj->ri", np.eye(2) - own, free)
     return found
@@ -348,28 +380,32 @@ def cubic(start: Column, end: Column) -> Column:
     return np.stack([np.zeros(len(start)), start, -(2.0 * start + end), start + end], axis=1)
 
 
-def moments_along(ends: Column, load: Column, by_thrust: Column) -> Column:
-    """M(ξ) = M_s (1 − ξ) + M_e ξ − ½ q L₀ L ξ (1 − ξ) + N v(ξ) of rods, lowest coefficient first, (rods, 4).
+def moments_along(ends: Column, between: Kinks, left: Column, length: Column, by_thrust: Column) -> Curves:
+    """M(ξ) = M_s (1 − ξ) + M_e ξ + what acts between the ends makes of simple beams + N v(ξ) of all rods.
 
-    ends: M_s and M_e, (rods, 2). load: q L₀ L, (rods,). by_thrust: N v, (rods, 4).
+    ends: M_s and M_e, (rods, 2). left: unit vectors to the left of the chords, length: theirs. by_thrust: N v, (rods, 4).
     """
-    start, end = ends.T
-    straight = np.stack([start, end - start - 0.5 * load, 0.5 * load, np.zeros(len(start))], axis=1)
-    return straight + by_thrust
+    straight = by_thrust.copy()
+    straight[:, 0] += ends[:, 0]
+    straight[:, 1] += ends[:, 1] - ends[:, 0]
+    return between.bulges(left, length).plus(straight)
 
 
-def _largest_moment(ends: Column, slopes: Column, thrust: Column, load: Column, length: Column) -> Column:
-    """The bending moment of largest size, and its distance from the start (m), of every rod; thrust: N L; load: q L₀ L."""
+def _largest_moment(moments: Curves, length: Column) -> Column:
+    """The bending moment of largest size, and its distance from the start (m), of every rod."""
+    row, low, high, polynomials = moments.stretches
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        start, linear, square, cube = moments_along(ends, load, thrust[:, None] * cubic(*slopes.T)).T
+        start, linear, square, cube = polynomials.T
         root = np.sqrt(np.maximum(square**2 - 3.0 * cube * linear, 0.0))
         both = -(square + np.copysign(root, square))
-        found = np.stack([np.zeros_like(start), np.ones_like(start), both / (3.0 * cube), linear / both])
-    found = np.where((found > 0.0) & (found <= 1.0), found, 0.0)
+        found = np.stack([low, high, both / (3.0 * cube), linear / both])
+    found = np.where((found > low) & (found <= high), found, low)
     values = start + found * (linear + found * (square + found * cube))
-    values[1] = ends[:, 1]
-    chosen, rows = np.abs(values).argmax(axis=0), np.arange(len(start))
-    return np.stack([values[chosen, rows], found[chosen, rows] * length], axis=1)
+    chosen, each = np.abs(values).argmax(axis=0), np.arange(len(row))
+    values, found = values[chosen, each], found[chosen, each]
+    order = np.lexsort((-np.abs(values), row))
+    most = order[np.unique(row[order], return_index=True)[1]] if len(row) > len(length) else each
+    return np.stack([values[most], found[most] * length], axis=1)
 
 
 DERIVATIONS = [known for known in globals().copy().values() if isinstance(known, Derivation)]  # all those above

@@ -2,7 +2,7 @@
 
 By d'Alembert's principle: what forces leave over accelerates a joint, m a = Σ F, and counts as the force −m a of inertia;
 moments about it likewise, −J α. Rods have no mass, which is lumped to the joints: their ends pull at them with forces N that
-are equal and opposite, and those that bend with shears V and moments M, too, which forces distributed along them balance.
+are equal and opposite, and those that bend with shears V and moments M, too, which what acts between them balances.
 """
 
 from __future__ import annotations
@@ -12,12 +12,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.bent import distributed_shares, is_frame
-from pinjoint.components.derived import chord_rotation, rigid_slopes
+from pinjoint.components.bent import borne_between, is_frame
+from pinjoint.components.derived import chord_rotation, on_joints, rigid_slopes
 from pinjoint.components.language import tr
 from pinjoint.components.load import factor_now
 from pinjoint.components.model import Model
-from pinjoint.components.rod import rigid_joints
+from pinjoint.components.rod import bearing, rigid_joints
+from pinjoint.components.spans import Kinks
 from pinjoint.components.written import ROUNDING
 
 Vectors = NDArray[np.float64]
@@ -62,7 +63,7 @@ class Apart(NamedTuple):
         on_ends = np.zeros((len(pull), 2, 3))
         on_ends[:, 1, :2] = pull[:, None] * along
         on_ends[:, 0, :2] = -on_ends[:, 1, :2]
-        if is_frame(model) or model.rods.distributed_force.any():
+        if is_frame(model) or bearing(model).any():
             on_ends += _of_bending(model, along)
         rest = _left_over(model, on_ends)
         return cls(pull, along, on_ends, rest[:, :2], rest[:, 2])
@@ -89,7 +90,7 @@ def _lengths(model: Model) -> Vectors:
 
 
 def _of_bending(model: Model, along: Vectors) -> Vectors:
-    """What bending and distributed forces add on the ends of every rod, dampers included, (m, 2, 3)."""
+    """What bending and what acts between them add on the ends of every rod, dampers included, (m, 2, 3)."""
     rods, particles = model.rods, model.particles
     first, last = rods.between.astype(np.intp).T
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
@@ -110,7 +111,7 @@ def _of_bending(model: Model, along: Vectors) -> Vectors:
 def _left_over(model: Model, on_ends: Vectors) -> Vectors:
     """Of forces x, y and moments, (n, 3)."""
     particles = model.particles
-    acting = np.column_stack([particles.applied_force - distributed_shares(model), particles.applied_moment])
+    acting = np.column_stack([particles.applied_force - borne_between(model), particles.applied_moment])
     answering = np.column_stack([particles.reaction, particles.reaction_moment])
     rest = acting + answering
     for end in (0, 1):
@@ -137,9 +138,7 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
     for rod, end in np.argwhere(rods.between == row).tolist():
         x, y, turn = (-known.on_ends[rod, end]).tolist()
         found.append(Force(model.describe(rods[rod]), "rod", x, y, moment=turn))
-    applied = np.append(
-        particles.applied_force[row] - distributed_shares(model)[row], particles.applied_moment[row]
-    )
+    applied = np.append(particles.applied_force[row] - borne_between(model)[row], particles.applied_moment[row])
     loads, rest = model.loads, applied.copy()
     turns = bool(rigid_joints(model)[row])
     for k in np.flatnonzero(loads.on == row).tolist():
@@ -172,26 +171,30 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
 
 
 def on_rod(model: Model, row: int) -> list[Force]:
-    """The forces and moments of its two joints on a rod, and the force distributed along it."""
+    """The forces and moments of its two joints on a rod, and what acts between them."""
     known, rods = Apart.of(model), model.rods
     on_ends, along = known.on_ends[row].tolist(), known.along[row]
     names, length = model.particles.names, float(_lengths(model)[row])
     first, last = rods.between[row].tolist()
     (x, y, turn), (far_x, far_y, far_turn) = on_ends
-    pressed = model.share * rods.distributed_force[row] * rods.rest_length[row]
     lever = length * float(along[0] * far_y - along[1] * far_x)
-    lever *= is_frame(model) or bool(pressed.any())  # of a bar's it is rounding only
+    lever *= is_frame(model) or bool(bearing(model)[row])  # of a bar's it is rounding only
     found = [
         Force(tr("at {particle}", particle=names[first]), "rod", x, y, moment=turn),
         Force(tr("at {particle}", particle=names[last]), "rod", far_x, far_y, moment=far_turn, lever=lever),
     ]
-    if pressed.any():
-        rigid = rods.turning_shares[row] > 0.0
-        slopes = np.where(rigid, model.particles.rotation[rods.between[row]] - chord_rotation(model)[row], 0.0)
-        bow = float(rods.load_shares[row] @ slopes) / rods.rest_length[row]  # mean deflection
-        bow *= not model.first_order
-        place = 0.5 * length * along + bow * np.array([-along[1], along[0]])
-        lever = float(place[0] * pressed[1] - place[1] * pressed[0])
-        x, y = pressed.tolist()
-        found.append(Force(tr("distributed force"), "load", x, y, lever=lever))
+    between, left = Kinks.of(model, model.share), np.array([-along[1], along[0]])
+    rigid, its_length = rods.turning_shares[row : row + 1] > 0.0, rods.rest_length[row : row + 1]
+    slopes = np.where(rigid[0], model.particles.rotation[rods.between[row]] - chord_rotation(model)[row], 0.0)
+    slopes *= not model.first_order
+    for load in np.unique(between.load[between.row == row]).tolist():
+        own = between.some((between.row == row) & (between.load == load))
+        own = own._replace(row=np.zeros_like(own.row))
+        work = on_joints(own.on_clamped(its_length), rods.fixity[row : row + 1])[0]
+        (near, far), bowed = own.on_ends(1)[0], slopes @ work[:6].reshape(2, 3)[:, :2]
+        lever = length * float(along[0] * far[1] - along[1] * far[0])
+        lever += float(left[0] * bowed[1] - left[1] * bowed[0])
+        name = tr("distributed force") if load < 0 else model.describe(model.span_loads[load])
+        x, y = (near + far).tolist()
+        found.append(Force(name, "load", x, y, moment=float(work[6]), lever=lever))
     return found

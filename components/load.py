@@ -1,9 +1,9 @@
-"""Load: a force on a particle that follows a history in time."""
+"""Loads: forces on particles that follow a history in time, and what acts between the ends of rods."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pkgutil import resolve_name
 from types import MappingProxyType
@@ -13,15 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import LARGEST, Field, FieldError, Vector
+from pinjoint.components.field import CM, LARGEST, Field, FieldError, Vector
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import tr
+from pinjoint.components.language import marked, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.table import Table
 from pinjoint.components.wording import cut, quoted
 from pinjoint.components.world import World
 
 History = Mapping[str, Any]
+DIRECTIONS = (marked("global"), marked("local"))  # of the forces of span loads
 
 
 @dataclass(frozen=True)
@@ -164,6 +165,65 @@ class Load(Handle):
         """The particle it acts on."""
         found: Particle = self.world.tables["particles"][self.on]
         return found
+
+
+class SpanLoad(Handle):
+    """What acts between the ends of a rod: a force and a moment at a place, and a force distributed from there on.
+
+    Several may act on a rod. Forces keep their directions while it moves, and act per original length.
+    """
+
+    __slots__ = ()
+    table, noun = "span_loads", "span load"
+
+    name: Field[str] = Field(doc="Its name; no two span loads have the same.", dtype=str)
+    rod: Field[int] = Field(
+        dtype="reference",
+        references="rods",
+        doc="The rod that it acts on: its name in files, its row in Python.",
+    )
+    start: Field[float] = Field(
+        "m",
+        minimum=0.0,
+        shown=CM,
+        doc="Where force and moment act, and where the distributed force begins: from the start of the rod, undeformed.",
+    )
+    end: Field[float | None] = Field(
+        "m",
+        nullable=True,
+        absent=marked("end of the rod"),
+        minimum=0.0,
+        shown=CM,
+        doc="Where the distributed force ends, from the start of the rod.",
+    )
+    force: Field[Vector] = Field("kN", shape=(2,), doc="Force at its start.")
+    moment: Field[float] = Field("kN·m", doc="Moment at its start, counter-clockwise.")
+    start_intensity: Field[Vector] = Field(
+        "kN/m",
+        shape=(2,),
+        title="intensity at start",
+        doc="Force per length where the distributed force begins; in between it changes linearly.",
+    )
+    end_intensity: Field[Vector] = Field(
+        "kN/m", shape=(2,), title="intensity at end", doc="Force per length where the distributed force ends."
+    )
+    direction: Field[str] = Field(
+        dtype=str,
+        default=DIRECTIONS[0],
+        choices=DIRECTIONS,
+        doc="Of forces: global, x to the right and y up, or local, x along the undeformed rod and y to its left.",
+    )
+
+    @classmethod
+    def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
+        """It ends where it starts, or farther along the rod."""
+        for row in rows[table.end[rows] < table.start[rows]][:1].tolist():
+            raise FieldError(
+                "{load}: its end, {end:g} m along the rod, is before its start, {start:g} m.",
+                load=table.world.describe(table[row]),
+                end=table.end[row],
+                start=table.start[row],
+            )
 
 
 def varying(loads: Table[Load]) -> NDArray[np.bool_]:

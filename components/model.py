@@ -8,7 +8,7 @@ from pinjoint.components.clock import Clock
 from pinjoint.components.derived import DERIVATIONS
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.grid import Grid
-from pinjoint.components.load import Load
+from pinjoint.components.load import Load, SpanLoad
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import Environment, Settings
@@ -16,7 +16,7 @@ from pinjoint.components.slider import Slider
 from pinjoint.components.table import Table
 from pinjoint.components.world import World
 
-KINDS = (Environment, Settings, Clock, Particle, Rod, Load, Grid)
+KINDS = (Environment, Settings, Clock, Particle, Rod, Load, SpanLoad, Grid)
 
 
 class Model(World):
@@ -39,6 +39,7 @@ class Model(World):
         "rods",
         "settings",
         "sliders",
+        "span_loads",
     )
 
     def __init__(self) -> None:
@@ -46,6 +47,7 @@ class Model(World):
         self.particles: Table[Particle] = self.tables["particles"]
         self.rods: Table[Rod] = self.tables["rods"]
         self.loads: Table[Load] = self.tables["loads"]
+        self.span_loads: Table[SpanLoad] = self.tables["span_loads"]
         self.grids: Table[Grid] = self.tables["grids"]
         self.environment: Environment = self.tables["environment"][0]
         self.settings: Settings = self.tables["settings"][0]

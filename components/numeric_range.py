@@ -12,10 +12,11 @@ from pinjoint.components.model import Model
 from pinjoint.components.obstacles import obstacles
 from pinjoint.components.particle import turned_supports
 from pinjoint.components.wording import cut
+from pinjoint.components.written import ROUNDING
 
 UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
 
-_TABLES = ("particles", "rods", "loads", "environment", "settings")
+_TABLES = ("particles", "rods", "loads", "span_loads", "environment", "settings")
 # What is checked besides what a person made: state that a person can type; and what follows, from positions that may be
 # too near or too far, as E·A and E·I, and from bending stiffnesses.
 _OTHERS = (
@@ -29,7 +30,7 @@ def incomputable(model: Model) -> str:
 
     Only what changed since there was none is looked at.
     """
-    problem = _out_of_range(model) or _too_far(model)
+    problem = _out_of_range(model) or _too_far(model) or _beyond(model)
     model.sound = model.sound if problem else model.revision
     return problem
 
@@ -72,6 +73,21 @@ def _too_far(model: Model) -> str:
             name=cut(others.names[row]),
             far=far[row],
             spacing=np.spacing(far[row]),
+        )
+    return ""
+
+
+def _beyond(model: Model) -> str:
+    """The sentence that names a span load that reaches beyond its rod; "" if there is none."""
+    loads, rods = model.span_loads, model.rods
+    reach, length = np.fmax(loads.start, loads.end), rods.original_length[loads.rod]
+    for row in np.flatnonzero(reach > length * (1.0 + ROUNDING))[:1].tolist():
+        return tr(
+            "{load} reaches {reach:g} m along {rod}, which is only {length:g} m long; let it end there, or move it.",
+            load=begun(model.describe(loads[row])),
+            rod=model.describe(rods[int(loads.rod[row])]),
+            reach=reach[row],
+            length=length[row],
         )
     return ""
 

@@ -226,8 +226,12 @@ class Rod(Handle):
     initial_slopes: Field[Vector] = by_end(
         "rad", doc="Slopes of its ends to its chord while no moment acts, caused by the temperature gradient."
     )
-    load_shares: Field[Vector] = by_end(
-        "m²", doc="What a slope of its ends adds to the area below its axis: (L₀², −L₀²)/12."
+    span_load: Field[tuple[float, ...]] = derived(
+        "kN·m",
+        shape=(7,),
+        axes=("start x", "start y", "start turn", "end x", "end y", "end turn", "turn"),
+        doc="Work of what acts between its ends, by unit slopes of these: forces × deflections, couples × rotations; turn:"
+        " couples.",
     )
     section_modulus: Field[float | None] = derived(
         "m³",
@@ -413,9 +417,9 @@ def is_warped(world: World) -> bool:
 
 
 def bends(world: World) -> bool:
-    """True if some rod has bending stiffness, and an end that is not hinged."""
+    """True if some rod has bending stiffness, and an end that is not hinged, or if a moment acts between its ends."""
     rods = world.tables["rods"]
-    return bool(rods.turning_shares.any())
+    return bool(rods.turning_shares.any() or turned_between(world))
 
 
 def rigid_joints(world: World) -> NDArray[np.bool_]:
@@ -453,9 +457,23 @@ def extensible_elsewhere(world: World) -> str:
 
 
 def bears_between(world: World) -> bool:
-    """True if a distributed force acts on some rod that bends."""
-    rods = world.tables["rods"]
-    return bool((rods.load_shares.any(axis=1) & rods.distributed_force.any(axis=1)).any())
+    """True if something acts between the ends of some rod that bends, or a moment between those of any."""
+    return bool(world.tables["rods"].span_load.any())
+
+
+def turned_between(world: World) -> bool:
+    """True if a moment acts between the ends of some rod."""
+    return bool(world.tables["span_loads"].moment.any())
+
+
+def bearing(world: World) -> NDArray[np.bool_]:
+    """Between the ends of which rods something acts, (rods,)."""
+    rods, loads = world.tables["rods"], world.tables["span_loads"]
+    found: NDArray[np.bool_] = np.asarray(rods.distributed_force.any(axis=1))
+    parts = [loads.column(name) for name in ("force", "start_intensity", "end_intensity")]
+    acting = np.column_stack([loads.moment, *parts]).any(axis=1)
+    found[loads.rod[acting]] = True
+    return found
 
 
 def nodes(world: World) -> NDArray[np.bool_]:

@@ -219,7 +219,7 @@ class Shape:
     title: such as "Mode 1 of 5: 9.276 Hz". displacement: (m), as drawn, (n, 2). about: the displacement (m) of the
     equilibrium that it leads away from, (n, 2); None: it leads away from the original positions. rotation: (rad), on the
     scale of the displacement, (n,); None: nothing turns. note: a sentence about what it leaves out, or "". parts: what is
-    drawn, where rods are divided for it; its places follow the particles in all arrays of the shape.
+    drawn, where rods are divided for it; its places follow the particles in all arrays of the shape. swings: to and fro.
     """
 
     title: str
@@ -228,6 +228,7 @@ class Shape:
     rotation: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
     note: str = field(default="", compare=False)
     parts: Parts | None = field(default=None, compare=False, repr=False)
+    swings: bool = True
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from pinjoint.components import written
-from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, deflections, extremes, is_frame
+from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, deflections, is_frame
 from pinjoint.components.camera import Camera, Viewport
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends, nodes
+from pinjoint.components.spans import extremes
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.view import Cut, View
 from pinjoint.methods.guide import scale_to
@@ -126,7 +127,8 @@ def figure(
         view.camera.fit(model.particles.position, 0.0, inner, 1.0)
         view.largest_force = _SHORTER * largest_force(model, view)
         if moved:
-            bows = extremes(deflections(model, np.flatnonzero(model.rods.bending_stiffness > 0.0)))[0]
+            bending = np.flatnonzero(model.rods.bending_stiffness > 0.0)
+            bows = extremes(deflections(model, bending).stretches)[0]
             most = max(float(np.hypot(*model.particles.displacement.T).max(initial=0.0)), largest(bows))
             model.settings.displacement_scale = scale_to(_DIAGRAM * unit / view.camera.scale, most)
             scale = written.given(model.settings.displacement_scale)

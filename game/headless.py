@@ -12,7 +12,7 @@ import numpy as np
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import joined, marked, tr
-from pinjoint.components.load import Load
+from pinjoint.components.load import Load, SpanLoad
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
@@ -95,6 +95,11 @@ class Headless(Context):
     def loads(self) -> Table[Load]:
         """Loads by name."""
         return self.model.loads
+
+    @property
+    def span_loads(self) -> Table[SpanLoad]:
+        """Loads between the ends of rods by name."""
+        return self.model.span_loads
 
     def table(self, name: str) -> Table[Any]:
         """The elements of any kind by name, those that mods add included: session.table("walls")["floor"]."""

@@ -7,13 +7,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pinjoint.components.bent import MOMENT, deflections, extremes, inner_forces
-from pinjoint.components.derived import chord_rotation, rigid_slopes
+from pinjoint.components.bent import MOMENT, deflections, inner_forces
+from pinjoint.components.derived import chord_rotation, on_axis, rigid_slopes
 from pinjoint.components.field import CM, ENDS, MOVED
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle, in_support_axes, supported, turned_supports
-from pinjoint.components.rod import Rod, bends, bends_unchecked, has_strength, nodes, rigid_joints, utilisation
+from pinjoint.components.rod import (
+    Rod,
+    bearing,
+    bends,
+    bends_unchecked,
+    has_strength,
+    nodes,
+    rigid_joints,
+    utilisation,
+)
+from pinjoint.components.spans import extremes
 from pinjoint.components.wording import as_said
 from pinjoint.components.written import ROUNDING
 from pinjoint.tables import Array, Column, Table
@@ -43,7 +53,7 @@ class Results:
         force = _largest(rods.end_axial_force, rods.shear, particles.reaction, particles.applied_force)
         moment = _largest(rods.bending_moment, particles.reaction_moment)
         force, moment = max(force, moment / (extent or np.inf)), max(moment, force * extent)
-        bowed = 0.0 if first_order else _by_bowing(model)
+        bowed = _between(model)
         sums = _sums(model, place, bowed, force, moment)
         length = rods.original_length if first_order else rods.length
         return cls(_of_rods(model, length, force, moment), _of_particles(model, force, moment), sums)
@@ -52,16 +62,16 @@ class Results:
 def _of_rods(model: Model, length: Array, force: float, moment: float) -> Table:
     """N and utilisation of trusses; where rods bend, N, V and M at both ends, and the extremes between them."""
     rods, columns = model.rods, []
-    if bends(model) or rods.distributed_force.any():
+    if bends(model) or bearing(model).any():
         stiff = np.where(rods.bending_stiffness > 0.0, 1.0, np.nan)[:, None]  # bars have neither V nor M
-        bearing = np.where(rods.distributed_force.any(axis=1), 1.0, stiff[:, 0])[:, None]
+        borne = np.where(bearing(model), 1.0, stiff[:, 0])[:, None]
         every = np.arange(rods.count)
-        moments, places = extremes(inner_forces(model, every, MOMENT))
-        moments, places = bearing * moments, places * length[:, None]
+        moments, places = extremes(inner_forces(model, every, MOMENT).stretches)
+        moments, places = borne * moments, places * length[:, None]
         places[~(np.abs(moments) > ROUNDING * moment)] = np.nan
-        bows = stiff[:, 0] * np.abs(extremes(deflections(model, every))[0]).max(axis=1, initial=0.0)
+        bows = stiff[:, 0] * np.abs(extremes(deflections(model, every).stretches)[0]).max(axis=1, initial=0.0)
         columns += _parts("end_axial_force", "N", ENDS, _KN, rods.end_axial_force, force)
-        columns += _parts("shear", "V", ENDS, _KN, bearing * rods.shear, force)
+        columns += _parts("shear", "V", ENDS, _KN, borne * rods.shear, force)
         columns += _parts("bending_moment", "M", ENDS, _KNM, stiff * rods.bending_moment, moment)
         for side, key, title in ((1, "largest_moment", tr("M max")), (0, "least_moment", tr("M min"))):
             columns.append(_column(key, title, _KNM, moments[:, side], moment))
@@ -98,7 +108,7 @@ def _of_particles(model: Model, force: float, moment: float) -> Table:
 def _sums(model: Model, place: Array, bowed: float, force: float, moment: float) -> Table:
     """Sums of the loads and of the reactions of joints, and of their moments about the first that is held.
 
-    bowed: what the moment of the loads is more, since forces act on bent axes.
+    bowed: what the moment of the loads is more, by couples between ends and since forces act on bent axes.
     """
     particles, used, turns = model.particles, nodes(model), rigid_joints(model)
     held = np.flatnonzero(used & supported(model)[:, :2].any(axis=1))
@@ -120,14 +130,17 @@ def _sums(model: Model, place: Array, bowed: float, force: float, moment: float)
     return Table(tr("sum"), [tr("loads"), tr("reactions")], columns)
 
 
-def _by_bowing(model: Model) -> float:
-    """The moment of distributed forces about chords, from which bent axes are away (kN·m)."""
+def _between(model: Model) -> float:
+    """The moment of what acts between ends about chords: of couples, and of forces, from which bent axes are away (kN·m)."""
     rods, rotation = model.rods, model.particles.rotation
-    area = (rods.load_shares * rigid_slopes(rods, rotation[rods.between], chord_rotation(model))).sum(axis=1)
+    couples = model.share * float(rods.span_load[:, 6].sum())
+    if model.first_order:
+        return couples
     first, second = rods.between.astype(np.intp).T
     chord = rods.difference + model.particles.displacement[second] - model.particles.displacement[first]
-    left = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.maximum(rods.length, 1e-300)[:, None]
-    return float((area * _cross(left, rods.distributed_force)).sum())
+    slopes = rigid_slopes(rods, rotation[rods.between], chord_rotation(model))
+    along = on_axis(rods.span_load, chord / np.maximum(rods.length, 1e-300)[:, None])[0]
+    return couples - model.share * float((slopes * along).sum())
 
 
 def _cross(arm: Array, force: Array) -> Array:

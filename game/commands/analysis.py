@@ -17,7 +17,7 @@ from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, bends
+from pinjoint.components.rod import Rod, bearing, bends
 from pinjoint.components.settings import AUTOMATIC
 from pinjoint.components.table import fields_of
 from pinjoint.components.theory import EXACT
@@ -65,7 +65,7 @@ _OF_BENDING: Mapping[str, tuple[Field[Any], ...]] = {
 
 def reported(model: Model, group: str) -> tuple[Field[Any], ...]:
     """The fields of a table that results report: Pinjoint's own, then those of mods' components."""
-    bent = bends(model) or model.rods.distributed_force.any()
+    bent = bends(model) or bearing(model).any()
     fields = model.tables[group].fields.values()
     of_mods = (field for field in fields if field.component and field.dtype in (float, int, bool))
     return (*_OWN[group], *(_OF_BENDING[group] if bent else ()), *of_mods)

@@ -125,6 +125,11 @@ def _parser() -> Parser:
         int,
     )
     option(shape, "--buckling-mode N", "also draw the Nth buckling mode, 1 the lowest", int)
+    option(
+        shape,
+        "--influence NAME",
+        "also draw an influence line: of AB, AB.start, AB.end, AB.shear, A.y or B.rotation",
+    )
     option(parser, "--theme", "the colours; default light", choices=theme_names(), default="light")
     option(
         parser,
@@ -187,6 +192,10 @@ def _show_shape(session: Session, options: argparse.Namespace) -> None:
     for kind in ("mechanism", "mode", "buckling mode"):
         if (number := getattr(options, kind.replace(" ", "_"))) is not None:
             session.document.shapes.show(numbered(session.model, kind, number))
+    if options.influence is not None:
+        from pinjoint.documents.influence import Influence  # it imports scipy
+
+        session.document.shapes.show(Influence.of(session.model, options.influence).shape(session.model))
 
 
 def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:

@@ -25,6 +25,7 @@ def command(words: Sequence[str]) -> int:
         " shear force, AB.shear; of a reaction, A.y or A.rotation; or of a displacement, B.y (unit-load method)",
         nargs="+",
     )
+    option(parser, "--path ROD", "with --influence: the rods along which the force moves; else all", nargs="+")
     flag(parser, "--theory-only", "leave out the simulation")
     option(
         parser,
@@ -37,7 +38,7 @@ def command(words: Sequence[str]) -> int:
     session = headless_of(options)
     try:
         if options.influence:
-            lines = influence.influence(session.model, options.influence)
+            lines = influence.influence(session.model, options.influence, options.path or ())
             write_result(options, lines, influence.rows, influence.lines)
             return ANSWERED
         found = comparison.compare(session, options.model, options.limit, simulate=not options.theory_only)

@@ -11,6 +11,7 @@ from pinjoint.components.field import Role
 from pinjoint.components.free_body import Apart
 from pinjoint.components.load import CONSTANT, static_factor
 from pinjoint.components.model import Model
+from pinjoint.components.rod import bearing
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.systems.base import Law, StopReason
 from pinjoint.systems.catalogue import step_systems
@@ -184,7 +185,7 @@ def _histories(model: Model) -> set[str]:
     """The different ways in which the loads of a model change in time, as text."""
     particles, environment = model.particles, model.environment
     steady = particles.force.any() or particles.moment.any() or particles.acceleration.any()
-    steady = steady or model.rods.distributed_force.any()
+    steady = steady or bearing(model).any()
     found = {repr(dict(load.history)) for load in model.loads if any(load.force) or load.moment}
     if steady or any(environment.force) or any(environment.acceleration):
         found.add(repr(CONSTANT))

@@ -12,7 +12,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, listed, tr
-from pinjoint.components.load import Load
+from pinjoint.components.load import Load, SpanLoad
 from pinjoint.components.mistake import Mistake, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
@@ -31,6 +31,7 @@ SECTIONS: Mapping[str, type[Handle]] = {
     "particles": Particle,
     "rods": Rod,
     "loads": Load,
+    "span_loads": SpanLoad,
     "grids": Grid,
     "state": Clock,
 }
@@ -38,6 +39,7 @@ _REQUIRED: Mapping[str, tuple[str, ...]] = {
     "particles": ("name", "position"),
     "rods": ("name", "between"),
     "loads": ("on",),
+    "span_loads": ("rod",),
 }
 
 # Changes a document; given the version of the mod that wrote it.

@@ -69,13 +69,17 @@ class Shapes:
 
     def swing(self, elapsed: float) -> float:
         """The share of the shape, from 1 to −1, that is drawn so many seconds after the last picture; 1 in the first."""
-        self._time += elapsed
+        self._time += elapsed * (self._shown is None or self._shown.swings)
         return math.cos(2.0 * math.pi * self._time / PERIOD)
 
     def next(self) -> None:
         """Go on to the next: mechanisms, buckling by its load, modes by their frequency, then none. Raises NoShape."""
-        if self.shown is None:
-            self._round = _first_ones(self._model)
+        self.go_through(lambda: _first_ones(self._model), begins=self.shown is None)
+
+    def go_through(self, find: Callable[[], list[Shape]], *, begins: bool) -> None:
+        """Go on to the next of some shapes, found where they begin; after the last, to none. Raises NoShape."""
+        if begins:
+            self._round = find()
             self.show(self._round[0])
             return
         after = self._round.index(self._shown) + 1 if self._shown in self._round else len(self._round)
@@ -251,8 +255,13 @@ def _shape(
     note: str = "",
     parts: Parts | None = None,
 ) -> Shape:
-    drawn = DRAWN_SHARE * extent(model) / max(1.0, 0.0 if parts else _bulge(model, motion)) * motion
+    drawn = drawn_share(model) / max(1.0, 0.0 if parts else _bulge(model, motion)) * motion
     return Shape(title, drawn[:, :2], about, drawn[:, 2] if drawn.shape[1] > 2 else None, note, parts)
+
+
+def drawn_share(model: Model) -> float:
+    """How large the largest displacement is drawn (m)."""
+    return DRAWN_SHARE * extent(model)
 
 
 def _bulge(model: Model, motion: NDArray[np.float64]) -> float:

@@ -14,7 +14,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import SAVED, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import marked
-from pinjoint.components.load import Load
+from pinjoint.components.load import Load, SpanLoad
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
@@ -37,7 +37,7 @@ class Part:
 
     @classmethod
     def selected(cls, model: Model) -> Part:
-        """The selected particles and rods, the ends of those rods, and the loads on them; and selected elements of mods.
+        """The selected particles and rods, the ends of those rods, and loads on them; and selected elements of mods.
 
         Raises Refusal if there are none.
         """
@@ -47,7 +47,9 @@ class Part:
         if not len(particles) and not others:
             raise Refusal("Nothing that can be copied is selected; click a particle or a rod first.")
         loads = np.flatnonzero(np.isin(model.loads.on, particles))
-        return cls(model, {Particle: particles, Rod: rows["rods"], Load: loads, **others})
+        spans = np.flatnonzero(np.isin(model.span_loads.rod, rows["rods"]))
+        known = {Particle: particles, Rod: rows["rods"], Load: loads, SpanLoad: spans}
+        return cls(model, {**known, **others})
 
     @classmethod
     def described(cls, text: str) -> Part:
@@ -56,7 +58,7 @@ class Part:
             source = parse(msgspec.json.decode(text))
         except (ModelError, ValueError, RecursionError):
             source = Model()
-        kinds: list[type[Handle]] = [Particle, Rod, Load, *_added()]
+        kinds: list[type[Handle]] = [Particle, Rod, Load, SpanLoad, *_added()]
         found = cls(source, {kind: np.arange(source.tables[kind.table].count) for kind in kinds})
         if not len(found.places):
             raise Refusal("The clipboard holds no particles or rods; select some and copy them with Ctrl+C.")
@@ -83,15 +85,16 @@ class Part:
         title: what undo calls it. Names that are taken are replaced by free ones.
         """
         source, rows = self.model, self.rows
-        place = np.zeros(source.particles.count, dtype=np.int64)
-        place[rows[Particle]] = model.particles.count + np.arange(len(rows[Particle]))
+        places = {kind.table: np.zeros(source.tables[kind.table].count, dtype=np.int64) for kind in rows}
+        for kind, those in rows.items():
+            places[kind.table][those] = model.tables[kind.table].count + np.arange(len(those))
         made: list[Handle] = []
         with model.transaction(title):
             for kind, those in rows.items():
                 table, columns = source.tables[kind.table], dict[str, Any]()
                 for field in table.fields_in(*SAVED):
                     column = table.column(field.name)[those]
-                    columns[field.name] = place[column] if field.references else column
+                    columns[field.name] = places[field.references][column] if field.references else column
                 for point in _points(kind):
                     columns[point] = columns[point] + offset
                 columns["name"] = _free_names(model, kind, columns["name"].tolist())
@@ -100,7 +103,7 @@ class Part:
                 for handle, entity in zip(new, entities, strict=True) if source.foreign else ():
                     if entity in source.foreign:
                         model.foreign[handle.entity] = source.foreign[entity]
-                made += new if kind is not Load else []
+                made += new if kind not in (Load, SpanLoad) else []
         return made
 
 

@@ -13,6 +13,7 @@ from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import language, tr
 from pinjoint.components.model import Model
+from pinjoint.components.rod import bearing
 from pinjoint.components.units import units_on_screen
 from pinjoint.components.view import Listing
 from pinjoint.results import Results
@@ -46,7 +47,7 @@ class Lister:
         context, rods = self._context, self._context.model.rods
         if TABLE not in context.view.wanted or context.scene not in (*LIVE, PROPERTIES):
             return 0.0, 0.0
-        wide = is_frame(context.model) or rods.distributed_force.any()
+        wide = is_frame(context.model) or bearing(context.model).any()
         most = max(rods.count, context.model.particles.count)
         return (_WIDE if wide else _NARROW), height_of(most + 1)
 

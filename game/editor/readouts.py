@@ -19,7 +19,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, bends
+from pinjoint.components.rod import Rod, bearing, bends
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import Pin, Readout, View
 from pinjoint.documents.assessment import LARGEST
@@ -109,7 +109,7 @@ def _error(share: float) -> str:
 
 def distance_at(model: Model, view: View, rod: Rod, pixel: Vector) -> float | None:
     """How far from the start of a rod (m) a pixel of it lies; None unless statics shows forces that change along it."""
-    bends_or_bears = rod.bending_stiffness or any(rod.distributed_force)
+    bends_or_bears = rod.bending_stiffness or bearing(model)[rod.row]
     if model.solution is None or not (view.forces_known and bends_or_bears):
         return None
     share = min(max(share_at(rod, view.camera.to_model(pixel)), 0.0), 1.0)

@@ -106,6 +106,7 @@ def _of_selection(context: Context, pixel: Vector) -> Groups:
         ("toggle diagrams", marked("force diagram")),
         ("probes.plot", marked("plot")),  # where the mod that plots is there
         ("new slider", marked("slider for its load or stiffness")),
+        ("next influence line", marked("influence lines")),
     ]
     yield [("properties", marked("properties")), *(results if particles or rods else ())]
     if particles:
@@ -122,7 +123,13 @@ def _of_selection(context: Context, pixel: Vector) -> Groups:
         hinge = [("hinge", _hinge_of(context, rods[0], pixel))] if alone else []
         yield [*hinge, ("rigid", marked("rigid at both ends"))]
     if rods and alone:
-        yield [("force", marked("distributed load: click where its arrow ends")), "weight along"]
+        yield [
+            ("force", marked("distributed load: click where its arrow ends")),
+            ("span load", marked("load from here: click where its arrow ends, or where it ends on the rod")),
+            ("moment", marked("moment here: click left or right of it")),
+            *(["clear span loads"] if (context.model.span_loads.rod == rods[0].row).any() else []),
+            "weight along",
+        ]
     if any(rod.bending_stiffness > 0.0 for rod in rods):
         yield ["end springs", *(["split"] if alone else ()), *DIVISIONS.values()]
     if rods:
@@ -152,7 +159,14 @@ def _of_canvas(context: Context) -> Groups:
         ],
         ["toggle run", "restart", "settle", "toggle statics", "next theory", "displacement method"],
         [
-            *("toggle diagrams", "toggle undeformed", "toggle free bodies", "toggle utilisation", "next shape"),
+            *(
+                "toggle diagrams",
+                "toggle undeformed",
+                "toggle free bodies",
+                "toggle utilisation",
+                "next shape",
+                "next influence line",
+            ),
             *("toggle table", "toggle theory", "toggle energy", "toggle events"),
         ],
         [*of_mods(draw=False)],

@@ -20,7 +20,7 @@ from pinjoint.components.tags import Hovered
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from pinjoint.editor.context import Context, Waiting
-from pinjoint.editor.gestures.drawing import Drawing, DrawRod, onto_member
+from pinjoint.editor.gestures.drawing import Drawing, DrawRod, onto_member, tool_in_hand
 from pinjoint.editor.gestures.moving import Placing
 from pinjoint.editor.readouts import distance_at, pinned, readouts
 from pinjoint.editor.sliders import slider_stack
@@ -74,7 +74,11 @@ def show(context: Context, elapsed: float) -> None:
         lasting = [context.notice]
     elif solved:
         rested = None if context.window is None else elapsed
-        lasting = [statics.message, statics.second_order(rested) if context.gesture is None else ""]
+        unfinished = tool_in_hand(context) in (DrawRod.tool, "place")  # more of the structure is to come
+        lasting = [
+            "" if unfinished else statics.message,
+            statics.second_order(rested) if context.gesture is None else "",
+        ]
         if lasting[1]:
             offer = tr(NAMES[EXACT if statics.first_order else FIRST_ORDER]), "next theory"
     else:

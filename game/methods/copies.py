@@ -59,7 +59,7 @@ def base_structure(model: Model, released: Sequence[Unknown]) -> Model:
 def unloaded(model: Model, released: Sequence[Unknown]) -> Model:
     """The released structure under nothing: no loads, lack of fit, warmth or displacements of supports."""
     copy = base_structure(model, released)
-    copy.delete(list(copy.loads))
+    copy.delete([*copy.loads, *copy.span_loads])
     for table in map(copy.tables.__getitem__, _ACTING):
         for name in _ACTING[table.name]:
             copy.assign(list(table), name, np.zeros_like(table.column(name)))

@@ -203,7 +203,7 @@ class ForceTables(Tables):
         return Table(forces.corner, forces.names, [*forces.columns, *products])
 
     def bending(self, which: Sequence[int], last: int | None = None) -> Table:
-        """The same over bending moments, at the starts and ends of the rods; q L²/8 by which M₀ bulges between."""
+        """The same over bending moments, at the starts and ends of the rods; what M₀ is between beside a line."""
         solution, rods, work = self.solution, self.model.rods, self.solution.work
         rows = np.flatnonzero((work.bending.unit != 0.0).any(axis=(0, 2)))
         columns = [
@@ -212,8 +212,10 @@ class ForceTables(Tables):
             *_at_ends("M₀", "kN·m", solution.base.bending_moment, rows, largest(solution.real.end_moment)),
         ]
         bulges = bulge(self.model)[rows]
-        if bulges.any():
-            columns.append(Column("qL²/8", "kN·m", -bulges / 8.0))
+        if self.model.span_loads.count and bulges.any():
+            columns += _at_ends("∫ M₀ − line", "kN·m", bulges, rows, largest(solution.real.end_moment))
+        elif bulges.any():
+            columns.append(Column("qL²/8", "kN·m", -1.5 * bulges.sum(axis=1)))
         for i in which:
             unit, moment = "" if solution.unknowns[i].is_moment else "m", work.bending.unit[i]
             columns += _at_ends(f"m{index(i + 1)}", unit, moment, rows, largest(moment))

@@ -13,7 +13,7 @@ from pinjoint.systems.edit.placing import SNAP_REACH
 COMFORTABLE = 100.0  # points, length of an arrow of usual size
 LONGEST = 400.0  # points, of the largest arrow before another scale is taken
 USUAL_STRAIN = 1e-3  # of a loaded structure, where no force is known yet
-USUAL_SLOPE = 0.1  # force × extent² / bending stiffness, likewise
+USUAL_SLOPE = 0.1  # force × length² / bending stiffness of members, likewise
 LEVER = 0.25  # of a moment, as a share of the extent
 USUAL_ACCELERATION = 10.0  # m/s², of a loaded free body
 USUAL_SPEED = 5.0  # m/s
@@ -21,7 +21,9 @@ USUAL_SPEED = 5.0  # m/s
 
 def usual(model: Model, field: str) -> float:
     """The usual size of a vector of elements: the largest there is, else one that suits the model."""
-    tables = [table for table in (model.particles, model.rods, model.loads) if field in table.fields]
+    tables = [
+        table for table in (model.particles, model.rods, model.loads, model.span_loads) if field in table.fields
+    ]
     largest = max(float(np.abs(table.column(field)).max(initial=0.0)) for table in tables)
     if largest > 0.0:
         return largest
@@ -29,11 +31,14 @@ def usual(model: Model, field: str) -> float:
         return USUAL_SPEED
     if field == "moment":
         return LEVER * usual(model, "force") * extent(model)
-    if field == "distributed_force":
-        return usual(model, "force") / extent(model)
+    if field == "end_intensity":
+        return usual(model, "distributed_force")
     rods = model.rods
+    span = float(rods.original_length.max(initial=0.0)) or 1.0
+    if field == "distributed_force":
+        return usual(model, "force") / span
     if rods.count and (bending := rods.bending_stiffness.max()) > 0.0:
-        return float(USUAL_SLOPE * bending / extent(model) ** 2)
+        return float(USUAL_SLOPE * bending / span**2)
     if rods.count:
         return float(USUAL_STRAIN * rods.stiffness.max())
     return float(USUAL_ACCELERATION * model.particles.mass.max(initial=1.0) / 1000.0)

@@ -14,6 +14,7 @@ from pinjoint.components.bent import deflected
 from pinjoint.components.derived import chord_rotation
 from pinjoint.components.field import SAVED
 from pinjoint.components.language import begun, marked, plural, tr
+from pinjoint.components.load import SpanLoad
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
@@ -72,6 +73,7 @@ def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list
             rod=begun(name),
         )
     ends, last = rod.ends, len(lengths) - 1
+    cuts = rod.original_length * np.append(np.append(0.0, shares), 1.0)
     with model.transaction(tr("divide {rods}", rods=name)):
         between = _particles(model, rod, shares)
         chain = [ends[0], *between, ends[1]]
@@ -87,6 +89,8 @@ def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list
         rest = {field: values[1:] for field, values in columns.items()}
         made = model.create(Rod, last, name=names[1:], between=pairs[1:], **rest)
         _let_sliders_move(model, rod, made)
+        for load in [load for load in model.span_loads if load.rod == rod.row]:
+            _let_parts_bear(model, load, [rod, *made], cuts)
         if kept := model.foreign.get(rod.entity):
             model.foreign.update({part.entity: kept for part in made})
     return [rod, *made]
@@ -140,6 +144,32 @@ def _particles(model: Model, rod: Rod, shares: Numbers) -> list[Particle]:
         angular_velocity=along("angular_velocity"),
         radius=min(first.radius, second.radius),
     )
+
+
+def _let_parts_bear(model: Model, load: SpanLoad, parts: Sequence[Rod], cuts: Numbers) -> None:
+    """Give the parts of a rod, between cuts (m) from its start, what a load on it exerts there."""
+    start, end = load.start, cuts[-1] if load.end is None else min(load.end, cuts[-1])
+    first, last = np.array([load.start_intensity, load.end_intensity])
+    own = max(int(np.searchsorted(cuts[:-1], start, side="right")) - 1, 0)
+    made: list[dict[str, Any]] = []
+    for number, (part, (low, high)) in enumerate(zip(parts, itertools.pairwise(cuts.tolist()), strict=True)):
+        begins, ends, here = max(start, low), min(end, high), number == own
+        values = first + (np.array([[begins], [ends]]) - start) / (end - start or 1.0) * (last - first)
+        spread = begins < ends and bool(values.any())
+        if here or spread:
+            facts = {
+                "rod": part.row,
+                "start": begins - low,
+                "end": ends - low if spread and ends < high else None,
+            }
+            facts |= {"force": load.force, "moment": load.moment} if here else {}
+            facts |= {"start_intensity": values[0], "end_intensity": values[1]} if spread else {}
+            made.append(facts | {"direction": load.direction})
+    none = {"force": (0.0, 0.0), "moment": 0.0, "start_intensity": (0.0, 0.0), "end_intensity": (0.0, 0.0)}
+    for name, value in [("end", None), *(none | made[0]).items()]:
+        model.assign([load], name, [value])
+    for facts in made[1:]:
+        model.create(SpanLoad, 1, **{name: [value] for name, value in facts.items()})
 
 
 def _let_sliders_move(model: Model, rod: Rod, parts: Sequence[Rod]) -> None:

@@ -102,7 +102,7 @@ def counted(noun: str, count: int) -> str:
 
 
 def _subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
-    """The selected elements by kind, the loads on a single particle, and the settings of all of a kind.
+    """The selected elements by kind, the loads on a single particle or rod, and the settings of all of a kind.
 
     Without any, the environment and the shown grid.
     """
@@ -114,6 +114,8 @@ def _subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
         named += [(model.describe(grid), [grid]) for grid in model.grids if grid.shown]
     if len(selected) == 1 and isinstance(selected[0], Particle):
         named += [(model.describe(load), [load]) for load in model.loads if load.on == selected[0].row]
+    if len(selected) == 1 and isinstance(selected[0], Rod):
+        named += [(model.describe(load), [load]) for load in model.span_loads if load.rod == selected[0].row]
     found = [subject for section, group in named for subject in _groups(model, section, group)]
     of = {tr("All particles"): Particle, tr("All rods"): Rod}
     settings = _groups(model, tr("All particles"), [model.settings])

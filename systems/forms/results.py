@@ -15,10 +15,10 @@ from pinjoint.components.field import CM, MOVED, Field, Role, on_screen
 from pinjoint.components.form import Reading
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import marked, tr, tr_in
-from pinjoint.components.load import CONSTANT, Load, factor_now
+from pinjoint.components.load import CONSTANT, Load, SpanLoad, factor_now
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle, in_support_axes, supported, turned_supports
-from pinjoint.components.rod import Rod, bends_unchecked, rigid_joints, utilisation
+from pinjoint.components.rod import Rod, bearing, bends_unchecked, rigid_joints, utilisation
 from pinjoint.components.view import Readout
 
 SECTION = marked("Results")
@@ -63,6 +63,8 @@ def told(model: Model, handle: Handle, *, forces_known: bool) -> list[tuple[str,
     found = [*results(model, [handle])] if forces_known else []
     if isinstance(handle, Particle):
         found += _of_loads(model, handle.row)
+    elif isinstance(handle, Rod):
+        found += _of_span_loads(model, handle)
     elif handle.points:
         found += _of_others(model, handle)
     return [(result.title, result.text) for result in found]
@@ -137,7 +139,7 @@ def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Reading]:
     """Forces, moment and rotation at both ends of a rod that bends, or bears a force along it."""
     rods = columns.model.rods
     bends = rods.bending_stiffness[row] > 0.0
-    if not (bends or rods.distributed_force[row].any()):
+    if not (bends or bearing(columns.model)[row]):
         return
     ends = [particle.said for particle in columns.model.rods[int(row)].ends]
     ends = (
@@ -241,6 +243,20 @@ def _of_loads(model: Model, particle: int) -> Iterator[Reading]:
                 "{now} of {whole}", now=written.vector(on_screen("kN")[1] * now, written.DIGITS), whole=text
             )
         yield _result(model.describe(load), text, Load.force)
+
+
+def _of_span_loads(model: Model, rod: Rod) -> Iterator[Reading]:
+    """What acts between the ends of a rod, and where."""
+    for load in model.span_loads:
+        if load.rod == rod.row:
+            start, end = (written.length(x) for x in (load.start, load.end or rod.original_length))
+            parts = [written.stated(load.force, "kN")] if any(load.force) else []
+            parts += [written.stated(load.moment, "kN·m")] if load.moment else []
+            parts = [tr("{load} at {place}", load=", ".join(parts), place=start)] if parts else []
+            spread = [written.stated(value, "kN/m") for value in (load.start_intensity, load.end_intensity)]
+            if any(load.start_intensity) or any(load.end_intensity):
+                parts.append(f"{' … '.join(dict.fromkeys(spread))}, {start} … {end}")
+            yield _result(model.describe(load), "; ".join(parts), SpanLoad.force)
 
 
 def _of_others(model: Model, handle: Handle) -> Iterator[Reading]:

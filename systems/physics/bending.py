@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.derived import chord_rotation, rigid_slopes
+from pinjoint.components.derived import chord_rotation, on_axis, rigid_slopes
 from pinjoint.components.model import Model
 from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.rod import bends
@@ -30,14 +30,13 @@ def bending_energy(model: Model) -> Array:
 
 
 def bowing_work(model: Model) -> Array:
-    """What its distributed force does on every rod by the slopes of its ends (kN·m)."""
+    """Work of what acts between the ends of every rod, by their slopes, of couples by the turning chord (kN·m)."""
     rods = model.rods
     first, second = rods.between.astype(np.intp).T
     present = rods.difference + model.particles.displacement[second] - model.particles.displacement[first]
     length = np.hypot(present[:, 0], present[:, 1])
-    x, y = (present / np.where(length > 0.0, length, 1.0)[:, None]).T
-    transverse = rods.distributed_force[:, 1] * x - rods.distributed_force[:, 0] * y
-    work: Array = transverse * (rods.load_shares * slopes(model)).sum(axis=1)
+    across = on_axis(rods.span_load, present / np.where(length > 0.0, length, 1.0)[:, None])[1]
+    work: Array = (across * slopes(model)).sum(axis=1) + rods.span_load[:, 6] * chord_rotation(model)
     return work
 
 

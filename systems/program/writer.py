@@ -15,7 +15,7 @@ import numpy as np
 
 from pinjoint.components.model import Model
 from pinjoint.components.particle import is_sprung
-from pinjoint.components.rod import bears_between, bends, is_warm, is_warped
+from pinjoint.components.rod import bears_between, bends, is_warm, is_warped, turned_between
 from pinjoint.systems import is_ours
 from pinjoint.systems.base import MOST_PARTS, REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
 from pinjoint.systems.collision.driven.columns import Order, Real, Whole
@@ -114,6 +114,7 @@ _TRAITS = {  # of a whole model
     "warm": is_warm,
     "bends": bends,
     "loaded": bears_between,
+    "turned": turned_between,
     "warped": is_warped,
     "sprung": is_sprung,
 }
@@ -152,7 +153,8 @@ class Writer:
         self.model = model
         self.form = form
         self.integrator = integrator
-        self.warm, self.bends, self.loaded, warped, self.sprung = (has(model) for has in _TRAITS.values())
+        traits = (has(model) for has in _TRAITS.values())
+        self.warm, self.bends, self.loaded, self.turned, warped, self.sprung = traits
         self.zeros = {} if warped else {"rods_initial_slopes": "(0.0, 0.0)"}
         self.coordinates = 3 if self.bends else 2
         self.collides = any(system.impulsive for system in systems)
@@ -193,7 +195,7 @@ class Writer:
         self.powers = self.rates or pushing or bool(self.working) or bool(self.working_ends)
         # All arrays that the functions read or write besides the integrator's own.
         self.columns = [*ALWAYS, *(["rods_misfit"] if self.warm else []), *(OF_BENDING if self.bends else ())]
-        self.columns += ["rods_distributed_force", "rods_load_shares"] if self.loaded else []
+        self.columns += ["rods_span_load"] if self.loaded else []
         self.columns += ["particles_support_springs"] if self.sprung else []
         self._add_columns([*self.bound, *self.potentials.values()])
         if self.pairs:
@@ -234,6 +236,7 @@ class Writer:
             "MEETS": self.collides,
             "POWERS": self.powers,
             "SPRUNG": self.sprung,
+            "TURNED": self.turned,
             "WARM": self.warm,
             "mass": "particles_masses[i, d]" if self.bends else "particles_mass[i]",
         }

@@ -23,10 +23,10 @@ from pinjoint.systems.render.model.cuts import draw_cuts
 from pinjoint.systems.render.model.diagrams import draw_diagrams
 from pinjoint.systems.render.model.free_bodies import draw_free_bodies
 from pinjoint.systems.render.model.members import (
-    draw_distributed_forces,
     draw_hinges,
     draw_inextensible,
     draw_moments,
+    draw_span_loads,
 )
 from pinjoint.systems.render.model.sheet import MANY, Sheet, Shown, Stage, measure
 from pinjoint.systems.render.model.structure import (
@@ -148,7 +148,7 @@ def _draw_structure(sheet: Sheet) -> None:
 
 def _draw_arrows(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     """Loads, velocities and reactions, beside supports on these sides of particles."""
-    draw_distributed_forces(sheet)
+    draw_span_loads(sheet)
     draw_loads(sheet)
     draw_velocities(sheet)
     draw_moments(sheet)
@@ -164,7 +164,7 @@ def _composed(sheet: Sheet) -> Picture:
     if sheet.view.free_bodies and sheet.view.forces_known:
         draw_halos(sheet)
         draw_free_bodies(sheet)
-        draw_distributed_forces(sheet)
+        draw_span_loads(sheet)
         draw_particles(sheet)
     else:
         _draw_structure(sheet)
@@ -226,7 +226,7 @@ def _symbols(sheet: Sheet) -> list[Mark]:
     """The marks of supports and arrows as the picture has them."""
     if sheet.view.free_bodies and sheet.view.forces_known:
         draw_free_bodies(sheet)
-        draw_distributed_forces(sheet)
+        draw_span_loads(sheet)
     else:
         sides = support_sides(sheet)
         draw_supports(sheet, sides)

@@ -117,7 +117,7 @@ class Simulation:
 
     def _sources(self) -> tuple[str, ...]:
         """The columns that the derived ones follow from."""
-        tables = ["clock", "particles", "rods", "loads", "environment", "settings"]
+        tables = ["clock", "particles", "rods", "loads", "span_loads", "environment", "settings"]
         tables += [kind.table for kind in EXTENSIONS.kinds.values() if kind.table in self.model.tables]
         return tuple(
             f"{name}.{field.name}"

@@ -1,7 +1,7 @@
 """Rods that bend: slopes of their ends to the chord, end moments and stiffness, of all rods at once.
 
 Corotational Euler–Bernoulli rods with the bowing of their cubic. Their potential, of the elongation e of the chord and
-the slopes φ, is ½ EA L₀ ε² + ½ (φ − φ⁰)ᵀ K (φ − φ⁰) − q_n A(φ), with ε = e/L₀ + ½ φᵀ B φ and A the area below the axis.
+the slopes φ, is ½ EA L₀ ε² + ½ (φ − φ⁰)ᵀ K (φ − φ⁰) − φᵀ p, with ε = e/L₀ + ½ φᵀ B φ and p what acts between the ends.
 Hinged ends are columns of zeros. Lengths in m, forces in kN; arrays have one row for each rod, (rods, …).
 """
 
@@ -13,7 +13,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.derived import along_and_across
+from pinjoint.components.derived import on_axis
 from pinjoint.components.model import Model
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ class Bent:
     """The state of bending. slopes: of rigid ends to the chord, 0 at others, (rods, 2). bowed: L₀ B φ (m), by which slopes
     elongate the axis, (rods, 2). moment: on the ends, counter-clockwise, (rods, 2). shear: across the chord, (rods,).
 
-    along, across: the distributed force along and across the chord (kN/m), (rods,). area: A/1 (m²), (rods,).
+    along, across: of forces between the ends, their work along and across the chord by unit slopes (kN·m), (rods, 2).
     """
 
     slopes: Array
@@ -35,14 +35,13 @@ class Bent:
     shear: Array
     along: Array
     across: Array
-    area: Array
 
 
 @dataclass(frozen=True)
 class Bending:
     """What the ends of rods feel, as in the columns of the same names.
 
-    end_stiffness, bowing: (rods, 3) for (start start, start end, end end); the others (rods, 2).
+    end_stiffness, bowing: (rods, 3) for (start start, start end, end end); span_load: (rods, 7); the others (rods, 2).
     """
 
     rest_length: Array
@@ -51,8 +50,7 @@ class Bending:
     turning_shares: Array
     fixity: Array
     initial_slopes: Array
-    load_shares: Array
-    distributed_force: Array
+    span_load: Array
 
     @classmethod
     def of(cls, model: Model, *, bows: bool) -> Bending:
@@ -92,9 +90,12 @@ class Bending:
         """The same with hinges at some rigid ends, (rods, 2), at which slopes are still those of the joints."""
         own = np.where(hinges, 0.0, self._of_ends - self.carried_over(self.end_stiffness[:, [1, 1]], hinges))
         mixed = np.where(hinges.any(axis=1), 0.0, self.end_stiffness[:, 1])
-        shares = np.where(hinges, 0.0, self.load_shares - self.carried_over(self.load_shares, hinges))
+        load = self.span_load.copy()
+        for part in range(3):
+            kept = load[:, part:6:3]
+            load[:, part:6:3] = np.where(hinges, 0.0, kept - self.carried_over(kept, hinges))
         stiffness = np.stack([own[:, 0], mixed, own[:, 1]], axis=1)
-        return replace(self, end_stiffness=stiffness, load_shares=shares)
+        return replace(self, end_stiffness=stiffness, span_load=load)
 
     # --- states ------------------------------------------------------------------------------------
 
@@ -106,25 +107,23 @@ class Bending:
     def bent(
         self, slopes: Array, axial_force: Array, axis: Array, length: Array, share: float, couples: bool
     ) -> Bent:
-        """The state with these slopes, while so much of the distributed forces acts.
+        """The state with these slopes, while so much of what there is between the ends acts.
 
-        couples: on the bent axis these make a couple, unlike in first-order theory.
+        couples: on the bent axis forces make a couple, unlike in first-order theory.
         """
         bowed, _ = self.bow(slopes)
-        along, across = along_and_across(share * self.distributed_force, axis)
-        area = (self.load_shares * slopes).sum(axis=1)
+        along, across = on_axis(share * self.span_load, axis)
         moment = _product(self.end_stiffness, slopes - self.initial_slopes) + axial_force[:, None] * bowed
-        moment -= across[:, None] * self.load_shares
-        couple = -along * area if couples else 0.0
+        moment -= across
+        couple = share * self.span_load[:, 6] - ((along * slopes).sum(axis=1) if couples else 0.0)
         shear = (moment.sum(axis=1) + couple) / np.where(length > 0.0, length, np.inf)
-        return Bent(slopes, bowed, moment, shear, along, across, area)
+        return Bent(slopes, bowed, moment, shear, along, across - share * self.span_load[:, 2:6:3])
 
     def carried(self, bent: Bent, axis: Array, length: Array, couples: bool) -> tuple[Array, Array]:
-        """What the whole distributed force adds to the moments on the ends (rods, 2) and to the shear (rods,)."""
-        along, across = along_and_across(self.distributed_force, axis)
-        moment = -across[:, None] * self.load_shares
-        couple = -along * bent.area if couples else 0.0
-        return moment, (moment.sum(axis=1) + couple) / np.where(length > 0.0, length, np.inf)
+        """What all that acts between the ends adds to the moments on these (rods, 2) and to the shear (rods,)."""
+        along, across = on_axis(self.span_load, axis)
+        couple = self.span_load[:, 6] - ((along * bent.slopes).sum(axis=1) if couples else 0.0)
+        return -across, (couple - across.sum(axis=1)) / np.where(length > 0.0, length, np.inf)
 
     def energy(self, slopes: Array) -> Array:
         """½ (φ − φ⁰)ᵀ K (φ − φ⁰) of every rod (kN·m)."""
@@ -170,10 +169,9 @@ class Bending:
         if geometric:
             block[:, 0, 1] += bent.shear * inverse
             block[:, 1, 0] += bent.shear * inverse
-            below = self.load_shares[:, :1] * start + self.load_shares[:, 1:] * end
-            turning = bent.along[:, None, None] * _dyad(turned, below)
+            turning = _dyad(turned, bent.along[:, :1] * start + bent.along[:, 1:] * end)
             block += turning + turning.swapaxes(1, 2)
-            block += (bent.across * bent.area)[:, None, None] * _dyad(turned, turned)
+            block += (bent.across * bent.slopes).sum(axis=1)[:, None, None] * _dyad(turned, turned)
         way = np.zeros((len(length), 4, 6))
         way[:, 0, 3:5], way[:, 1, 3], way[:, 1, 4] = axis, -axis[:, 1], axis[:, 0]
         way[:, :2, :2] = -way[:, :2, 3:5]

@@ -16,11 +16,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pinjoint.components.derived import on_axis
 from pinjoint.components.language import plural, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.particle import supported
-from pinjoint.components.rod import extensible_elsewhere
+from pinjoint.components.rod import bears_between, extensible_elsewhere
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import needed_parts
@@ -95,7 +96,7 @@ class Buckling:
             rods, live, held, change = _ahead(structure, about, External.of(model))
             dead = rods.axial_force - about.load_factor * live
             softening = _geometric(structure, live, 1.0, rods)
-        softens = bool((live < 0.0).any() or model.rods.distributed_force.any())
+        softens = bool((live < 0.0).any() or bears_between(model))
         vectors = _modes(structure, held, softening, count if softens else 0)
         if about is None:
             factors = _factors(structure, vectors, steady, softening)
@@ -163,7 +164,7 @@ def _ahead(
 
 
 def _geometric(structure: Structure, axial_force: Array, share: float, rods: Response | None = None) -> Matrix:
-    """The stiffness of straight rods by these axial forces alone, and by what a share of the distributed forces turns.
+    """The stiffness of straight rods by these axial forces alone, and by what a share of the forces between ends turns.
 
     rods: where they are, if moved.
     """
@@ -171,7 +172,7 @@ def _geometric(structure: Structure, axial_force: Array, share: float, rods: Res
     bending, bent = structure.bending, rods.bent
     if bending is not None and bent is not None:
         still = {name: np.zeros_like(values) for name, values in vars(bent).items()}
-        along = share * (bending.distributed_force * rods.axis).sum(axis=1)
+        along = on_axis(share * bending.span_load, rods.axis)[0]
         bent = replace(bent, **still | {"along": along})
         bending = replace(bending, end_stiffness=np.zeros_like(bending.end_stiffness))
     rods = replace(rods, axial_force=axial_force, bent=bent)

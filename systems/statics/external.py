@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pinjoint.components import written
-from pinjoint.components.bent import distributed_shares
+from pinjoint.components.bent import borne_between
 from pinjoint.components.language import plural, tr
 from pinjoint.components.load import static_factor
 from pinjoint.components.model import Model
@@ -39,7 +39,7 @@ class External:
         theory: where "first-order", without those on particles that no rod joins, which no contact can hold either.
         """
         particles, environment = model.particles, model.environment
-        scaled = particles.force + np.array(environment.force) + distributed_shares(model)
+        scaled = particles.force + np.array(environment.force) + borne_between(model)
         moment = particles.moment.copy()
         notes = []
         for load in model.loads:

@@ -12,7 +12,8 @@ By how much the releases open is found by virtual work:
 
 n, m and the reactions r are those of a unit force; N, M those of the load; ΔL and κ elongations and curvatures without
 force, by warmth and lack of fit; c displacements of supports, −R/k of elastic ones. Springs at the ends of rods add m M/k to
-∫ m M dx/EI. Exact: N is constant along a rod or, with what acts along it, counts by its mean; m is linear and M a parabola.
+∫ m M dx/EI. Exact: N is constant along a rod or, with what acts along it, counts by its mean; m is linear, and so is M but
+for what acts between the ends.
 """
 
 from __future__ import annotations
@@ -22,11 +23,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pinjoint.components.derived import along_and_across
+from pinjoint.components.derived import on_axis
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.particle import in_support_axes, spring_stiffness, supported
+from pinjoint.components.spans import Kinks
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
@@ -249,10 +251,11 @@ def real_structure(model: Model) -> tuple[Released, SetState]:
 
 
 def bulge(model: Model) -> Array:
-    """q L₀² of rods (kN·m), of which their moments bulge by −1/8 at the middle, (rods,)."""
+    """∫ (1 − ξ, ξ) M dξ of what acts between the ends of simple beams (kN·m), by which moments bulge, (rods, 2)."""
     rods = model.rods
     axis = rods.difference / rods.original_length[:, None]
-    found: Array = along_and_across(rods.distributed_force, axis)[1] * rods.rest_length**2
+    held = on_axis(Kinks.of(model).on_clamped(rods.rest_length), axis)[1]
+    found: Array = (held / 3.0 - held[:, ::-1] / 6.0) * [-1.0, 1.0]
     return found
 
 
@@ -291,7 +294,7 @@ def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequ
             m,
             turning,
             linear,
-            turning * (straight - bulge(model) * m.sum(axis=2) / 24.0),
+            turning * (straight + (bulge(model) * m).sum(axis=2)),
             length * curvature * m.mean(axis=2),
         ),
         Terms(

@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pinjoint.components.derived import by_fixity, cubic, own_slopes
+from pinjoint.components.derived import by_fixity, cubic, on_joints, own_slopes
 from pinjoint.components.model import Model
+from pinjoint.components.spans import Kinks
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import Bending
 from pinjoint.systems.statics.buckling import members
@@ -56,15 +57,14 @@ class Divided:
         ends[first, 0], ends[last, 1] = whole.ends[:, 0], whole.ends[:, 1]
         inner = row[~first], (number / parts[row])[~first]
         length = (rods.rest_length / parts)[row]
-        inside = (rods.bending_stiffness > 0.0)[row, None]
-        per_slope, of_ends = by_fixity(
-            np.where(np.stack([first, last], axis=1), _of_parts(rods.fixity[row], parts[row]), inside), length
-        )
+        inside, outer = (rods.bending_stiffness > 0.0)[row, None], np.stack([first, last], axis=1)
+        per_slope, of_ends = by_fixity(np.where(outer, _of_parts(rods.fixity[row], parts[row]), inside))
+        between = Kinks.of(model).divided(row, number / parts[row], (number + 1) / parts[row])
         bending = Bending(
             rest_length=length,
             end_stiffness=(rods.bending_stiffness[row] / length)[:, None] * per_slope,
             initial_slopes=rods.initial_slopes[row] / parts[row, None],
-            distributed_force=rods.distributed_force[row],
+            span_load=on_joints(between.on_clamped(length), of_ends["fixity"]),
             **of_ends,
         )
         between = particles.position[whole.ends[inner[0], 0]] + inner[1][:, None] * rods.difference[inner[0]]

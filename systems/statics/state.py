@@ -90,7 +90,7 @@ class StaticState:
             reaction=reaction[:, :2],
             reaction_moment=structure.rotation(reaction),
             diagrams=diagrams(
-                model.rods,
+                model,
                 response.axis[rods],
                 response.length[rods],
                 structure.chords(displacement)[rods],

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.bent import FLAT, distributed_shares
+from pinjoint.components.bent import FLAT, borne_between
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.settings import DIAGRAMS
@@ -152,7 +152,7 @@ def _turns(text: Text, model: Model, row: int) -> bool:
 def _says(text: Text, shaft: Part, model: Model, row: int) -> bool:
     """Whether a text is the size of the force that an arrow shows."""
     particles = model.particles
-    applied = particles.applied_force - distributed_shares(model)
+    applied = particles.applied_force - borne_between(model)
     force = (applied if text.colour == LIGHT.load else particles.reaction)[row]
     step = np.abs(shaft.points[1] - shaft.points[0])
     size = abs(float(force[int(step[1] > step[0])]))

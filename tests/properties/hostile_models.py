@@ -90,6 +90,8 @@ class Hostile:
             force=self.pair(0.0, -1.0), acceleration=self.pair(0.0, -9.81), drag=abs(self.number(0.1))
         )
         made["settings"] = self._settings()
+        if draw() < 0.3:
+            made["span_loads"] = [self._span_load(f"P{i}P{j}") for i, j in chosen if draw() < 0.5]
         if draw() < 0.17:
             self._damage(made)
         return made
@@ -132,6 +134,17 @@ class Hostile:
             "section": self.random.choice(4 * ("IPE 200", "shs 100x5", "rectangle 30×50") + ("HEX 1",)),
             "material": self.random.choice(6 * ("S235", "timber C24") + ("cheese",)),
         }
+
+    def _span_load(self, rod: str) -> dict[str, Any]:
+        return {"rod": rod} | self.some(
+            start=abs(self.number(0.3)),
+            end=abs(self.number(0.6)),
+            force=self.pair(1.0, -5.0),
+            moment=self.number(2.0),
+            start_intensity=self.pair(1.0, -5.0),
+            end_intensity=self.pair(-1.0, 3.0),
+            direction=self.random.choice(("global", "local")),
+        )
 
     def _rod(self, first: str, second: str) -> dict[str, Any]:
         return {"name": f"{first}{second}", "between": [first, second]} | self.some(

@@ -56,22 +56,27 @@ def member(rod: Document, places: list[int], span: np.ndarray) -> Member:
     expansion = rod.get("thermal_expansion", EXPANSION)
     longer = rest - length + rest * expansion * rod.get("temperature_change", 0.0)
     curvature = -expansion * rod.get("temperature_gradient", 0.0)
-    moment = across * rest**2 / 12.0
+    # A force that changes linearly: its value at the start all along, and a triangle that grows to the end.
+    more_along, more_across = rotation[:2, :2] @ np.array(rod.get("more_at_end", (0.0, 0.0)))
+    moments = np.array([across / 12.0 + more_across / 30.0, across / 12.0 + more_across / 20.0]) * rest**2
+    pushed = np.array([across / 2.0 + 0.15 * more_across, across / 2.0 + 0.35 * more_across]) * rest
+    pulled = np.array([along / 2.0 + more_along / 6.0, along / 2.0 + more_along / 3.0]) * rest
     bent = rod.get("bending_stiffness", 0.0) * curvature
     fixed = np.array(
         [
-            axial * longer - along * rest / 2.0,
-            -across * rest / 2.0,
-            bent - moment,
-            -axial * longer - along * rest / 2.0,
-            -across * rest / 2.0,
-            moment - bent,
+            axial * longer - pulled[0],
+            -pushed[0],
+            bent - moments[0],
+            -axial * longer - pulled[1],
+            -pushed[1],
+            moments[1] - bent,
         ]
     )
     bars = bend == 0.0
     hinged, given = rod.get("hinged", (False, False)), rod.get("end_springs", (0.0, 0.0))
     springs = {2 + 3 * end: given[end] * (not bars) for end in (0, 1) if hinged[end] or given[end] or bars}
-    if bars:
+    if bars:  # simple beams
+        fixed[[1, 4]] += np.array([1.0, -1.0]) * (fixed[2] + fixed[5]) / -length
         fixed[[2, 5]] = 0.0
     return Member(places, turned, stiffness, fixed, springs, length, (along, across), longer if firm else None)
 

@@ -72,7 +72,8 @@ def test_without_density_inertia_follows_from_the_masses() -> None:
 def test_a_distributed_force_acts_half_on_each_end() -> None:
     model = rod(distributed_force=[1.0, -2.0], rest_length=3.0)
     assert model.particles.constant_force.tolist() == [[1.5, -3.0], [1.5, -4.0]]
-    assert model.rods.load_shares[0] == pytest.approx([9.0 / 12.0, -9.0 / 12.0])
+    held = np.array([1.0, -2.0, 0.0]) * 9.0 / 12.0
+    assert model.rods.span_load[0] == pytest.approx([*held, *-held, 0.0])
     assert model.particles.constant_moment.tolist() == [0.0, 3.0]
 
 

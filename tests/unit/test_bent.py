@@ -13,14 +13,12 @@ from pinjoint.components.bent import (
     SHEAR,
     Axes,
     curved_lines,
-    derivative,
     inner_forces,
     middles,
-    values,
-    zeros,
 )
 from pinjoint.components.model import Model
 from pinjoint.components.settings import DIAGRAMS
+from pinjoint.components.spans import Curves, values, zeros
 from pinjoint.documents.document import parse
 from tests.systems.render.frame_models import CLAMPED, EI, FRAMES, PINNED, ROLLER, frame, portal_at_rest
 
@@ -51,8 +49,8 @@ def test_a_simple_beam_sags_by_the_closed_form() -> None:
     expected = LOAD * x * (SPAN**3 - 2.0 * SPAN * x**2 + x**3) / (24.0 * EI)
     assert sag(model, 0.3) == pytest.approx(expected, rel=1e-12)
     polynomial = inner_forces(model, ONE, MOMENT)
-    assert values(polynomial, np.array([0.5]))[0] == pytest.approx(-LOAD * SPAN**2 / 8.0, rel=1e-9)
-    assert zeros(inner_forces(model, ONE, SHEAR))[1] == pytest.approx(0.5)
+    assert polynomial.at(np.array([0.5]))[0] == pytest.approx(-LOAD * SPAN**2 / 8.0, rel=1e-9)
+    assert zeros(inner_forces(model, ONE, SHEAR).stretches)[1] == pytest.approx(0.5)
 
 
 def test_hinged_ends_sag_alike() -> None:
@@ -68,8 +66,8 @@ def test_a_clamped_beam_sags_between_ends_that_do_not_turn() -> None:
     model = beam(CLAMPED, CLAMPED, (0.0, 0.0))
     assert sag(model, 0.5) == pytest.approx(LOAD * SPAN**4 / (384.0 * EI), rel=1e-12)
     polynomial = inner_forces(model, ONE, MOMENT)
-    assert values(polynomial, np.array([1.0]))[0] == pytest.approx(LOAD * SPAN**2 / 12.0, rel=1e-9)
-    which, shares = zeros(polynomial)
+    assert polynomial.at(np.array([1.0]))[0] == pytest.approx(LOAD * SPAN**2 / 12.0, rel=1e-9)
+    which, shares = zeros(polynomial.stretches)
     assert which.tolist() == [0, 0]
     assert shares == pytest.approx([0.5 - 1.0 / 12.0**0.5, 0.5 + 1.0 / 12.0**0.5], rel=1e-9)
 
@@ -82,7 +80,7 @@ def test_forces_along_rods_begin_and_end_with_the_columns(name: str, quantity: s
     rods = session.model.rods
     polynomials = inner_forces(session.model, np.arange(rods.count), quantity)
     column = {AXIAL: rods.end_axial_force, MOMENT: rods.bending_moment, SHEAR: rods.shear}[quantity]
-    found = values(polynomials, np.array([0.0, 1.0]))
+    found = polynomials.at(np.array([0.0, 1.0]))
     assert found == pytest.approx(column, rel=1e-9, abs=1e-9 * np.abs(column).max())
 
 
@@ -91,7 +89,7 @@ def test_no_moment_along_a_rod_is_larger_than_the_largest(name: str) -> None:
     session = Session.open(FRAMES[name]())
     session.run(time=0.01)
     rods = session.model.rods
-    found = values(inner_forces(session.model, np.arange(rods.count), MOMENT), np.linspace(0.0, 1.0, 201))
+    found = inner_forces(session.model, np.arange(rods.count), MOMENT).at(np.linspace(0.0, 1.0, 201))
     assert np.abs(found).max(axis=1) == pytest.approx(np.abs(rods.largest_moment[:, 0]), rel=1e-3, abs=1e-9)
 
 
@@ -100,8 +98,8 @@ def test_moments_change_with_the_shear() -> None:
     model, rows = session.model, np.arange(3)
     session.document.get_ready()
     shares = np.linspace(0.0, 1.0, 7)
-    slope = values(derivative(inner_forces(model, rows, MOMENT)), shares) / model.rods.length[:, None]
-    shear = values(inner_forces(model, rows, SHEAR), shares)
+    slope = inner_forces(model, rows, MOMENT).derivative.at(shares) / model.rods.length[:, None]
+    shear = inner_forces(model, rows, SHEAR).at(shares)
     # times the slope, which the moment has and the shear not
     axial = np.abs(model.rods.axial_force)[:, None] * 0.02
     assert (np.abs(slope - shear) <= axial).all()
@@ -172,7 +170,7 @@ def test_rigid_joints_keep_their_angles() -> None:
 def test_zeros_of_random_polynomials() -> None:
     rng = np.random.default_rng(3)
     polynomials = rng.normal(size=(200, 5))
-    which, shares = zeros(polynomials)
+    which, shares = zeros(Curves.plain(polynomials).stretches)
     assert np.abs(values(polynomials[which], shares[:, None])).max() < 1e-12
     for row, polynomial in enumerate(polynomials):
         roots = np.roots(polynomial[::-1])

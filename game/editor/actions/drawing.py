@@ -13,7 +13,15 @@ from pinjoint.components.rod import Rod
 from pinjoint.components.settings import HUBS
 from pinjoint.components.tags import Selected
 from pinjoint.editor.context import Context, tell
-from pinjoint.editor.gestures.drawing import DrawForce, DrawMoment, DrawRod, DrawVelocity, take_up, tool_in_hand
+from pinjoint.editor.gestures.drawing import (
+    DrawForce,
+    DrawMoment,
+    DrawRod,
+    DrawSpanLoad,
+    DrawVelocity,
+    take_up,
+    tool_in_hand,
+)
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, pick_rod
 from pinjoint.systems.edit.placing import place, snapped
@@ -164,13 +172,22 @@ action(
     hint=marked("loads: drag an arrow from a particle     from a rod: a distributed load     F or Esc done"),
 )(DrawForce.use)
 action(
+    "span load",
+    "ctrl+f",
+    "draw a load at a place of a rod",
+    while_drawing=True,
+    draws=DrawSpanLoad.begin,
+    enabled=attrgetter("model.rods.count"),
+    hint=marked("loads between ends: click on a rod where one acts or begins     Esc done"),
+)(DrawSpanLoad.use)
+action(
     "moment",
     "ctrl+m",
-    "draw a moment on a particle",
+    "draw a moment on a particle or a rod",
     while_drawing=True,
     draws=DrawMoment.begin,
     enabled=attrgetter("model.particles.count"),
-    hint=marked("moments: drag from a particle, to the left for counter-clockwise     Esc done"),
+    hint=marked("moments: drag from a particle or a rod, to the left for counter-clockwise     Esc done"),
 )(DrawMoment.use)
 action(
     "velocity",

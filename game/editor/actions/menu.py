@@ -133,6 +133,13 @@ def _weight_along(context: Context, pixel: Vector) -> None:
     context.notice = weigh_along(context.model, context.model.tagged(Selected, Rod) or list(context.model.rods))
 
 
+@offer("clear span loads", "", "remove the loads between its ends")
+def _clear_span_loads(context: Context, pixel: Vector) -> None:
+    """Delete what acts between the ends of the selected rods, but for forces distributed all along."""
+    rods = {rod.row for rod in _selected(context)}
+    context.model.delete([load for load in context.model.span_loads if load.rod in rods])
+
+
 @offer(
     "toggle cable",
     "",

@@ -166,6 +166,27 @@ def _next_shape(context: Context, pixel: Vector) -> None:
     context.notice = shown.note if shown is not None else ""
 
 
+@action(
+    "next influence line",
+    "ctrl+i",
+    "influence lines of a rod or particle",
+    while_drawing=False,
+    enabled=lambda context: len(context.selected) == 1,
+)
+def _next_influence_line(context: Context, pixel: Vector) -> None:
+    """The next influence line of what is selected: N, M and V of a rod, reactions or displacements of a particle."""
+    from pinjoint.documents.influence import lines_of  # it imports scipy
+
+    chosen, shapes = context.selected, context.document.shapes
+    if len(chosen) != 1 or not isinstance(chosen[0], Particle | Rod):
+        raise Refusal(
+            "Select one rod or one particle first; then this draws its influence lines, one after the other."
+        )
+    found = lines_of(context.model, chosen[0])
+    shapes.go_through(lambda: found, begins=shapes.shown not in found)
+    context.view.shape = shapes.shown
+
+
 @action("new slider", "ctrl+l", "add a slider for selected load or stiffness", while_drawing=False)
 def _new_slider(context: Context, pixel: Vector) -> None:
     """A slider for what is moved most of the selected elements: their load, their stiffness."""

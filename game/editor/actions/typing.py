@@ -37,6 +37,7 @@ def type_with_tool(context: Context, text: str) -> None:
     """Type characters with a tool in hand; what begins as no number is passed over."""
     if not typed(context) and text[:1] not in BEGINS:
         return
+    context.notice = ""  # that the same key lets no time pass
     if not isinstance(context.gesture, Drawing):
         try:
             context.gesture = _drawing_for(context, context.view.tool)

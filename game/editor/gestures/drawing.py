@@ -13,6 +13,7 @@ from pinjoint.components import written
 from pinjoint.components.field import CM, Field, Vector, on_screen
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
+from pinjoint.components.load import SpanLoad
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends, rigid_joints
@@ -326,12 +327,73 @@ class DrawDistributedForce(DrawArrow):
         return replace(made, along=along) if made is not None else None
 
 
+class DrawSpanLoad(DrawArrow):
+    """A force at a place of a rod; after a second click on the rod, one that is distributed up to there."""
+
+    tool, field = "span load", "force"
+    asks = marked("load on {rods}: click where its arrow ends, or on the rod where a distributed load ends")
+    says = marked("{rods}: {load}, {place} from its start")
+
+    def __init__(self, context: Context, pixel: Vector, rod: Rod) -> None:
+        self.places = [_along(context, rod, pixel)]
+        super().__init__(context, context.view.camera.to_model(pixel), rod)
+
+    @classmethod
+    def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
+        rod = None if context.view.covers(pixel) else pick_rod(context.model, context.view, pixel)
+        return None if rod is None else cls(context, pixel, rod)
+
+    @property
+    def _field(self) -> Field[Any]:
+        found: Field[Any] = getattr(SpanLoad, self.field)
+        return found
+
+    def start(self, context: Context) -> Vector:
+        """Where the arrow begins (m): at the last place on the rod, as it is drawn."""
+        return self._at(self.places[-1])
+
+    def _at(self, place: float) -> Vector:
+        return place_at(self.elements[0], place / self.elements[0].original_length)
+
+    def finish(self, context: Context, pixel: Vector) -> None:
+        place, on_rod = _along(context, self.elements[0], pixel), pick_rod(context.model, context.view, pixel)
+        if self.typed or len(self.places) > 1 or on_rod is not self.elements[0] or place in self.places:
+            super().finish(context, pixel)
+            return
+        self.places.append(place)
+        self.field = SpanLoad.end_intensity.name  # type: ignore[misc]
+        self.hint = joined([tr("distributed load: click where its arrow ends"), tr("Esc cancel")], BETWEEN)
+
+    def drop(self, context: Context, pixel: Vector) -> None:
+        value, [rod] = self.value(context, pixel), self.elements
+        start, *end = sorted(self.places)
+        fields = (self.field, *[SpanLoad.start_intensity.name] * len(end))
+        where: dict[str, Any] = {"start": [start], "end": end or [None]}
+        context.model.create(SpanLoad, 1, rod=[rod.row], **where, **{field: [value] for field in fields})
+        context.select(rod)
+        place = " … ".join(written.length(x, written.DIGITS) for x in (start, *end))
+        context.notice = tr(self.says, rods=begun(rod.said), load=self.shown(value), place=place)
+
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        made, along = (
+            super().preview(context, pixel),
+            list(map(self._at, self.places)),
+        )
+        if made is None or len(along) == 1:
+            return made
+        return replace(made, kind="distributed force", along=((along[0], along[1]),))
+
+
 class DrawMoment(DrawArrow):
-    """The constant moment on a particle: to the left counter-clockwise, to the right clockwise."""
+    """The constant moment on a particle or at a place of a rod: to the left counter-clockwise, to the right clockwise."""
 
     tool, field = "moment", "moment"
     asks = marked("moment on {particle}: click at its left (counter-clockwise) or right")
     says = marked("Moment on {particle}: {value}")
+
+    @classmethod
+    def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
+        return super().begin(context, pixel) or DrawSpanMoment.begin(context, pixel)
 
     def __init__(self, context: Context, particle: Particle) -> None:
         if not rigid_joints(context.model)[particle.row]:
@@ -345,7 +407,7 @@ class DrawMoment(DrawArrow):
     def value(self, context: Context, pixel: Vector) -> float:
         if self.typed:
             return number(self.typed, *self.unit)
-        x, _ = super().value(context, pixel)
+        x, _ = DrawArrow.value(self, context, pixel)
         return -float(x) + 0.0
 
     def shown(self, value: float) -> str:
@@ -356,6 +418,15 @@ class DrawMoment(DrawArrow):
         value, start = self.value(context, pixel), self.start(context)
         x, _ = arrow_end(context.view, start, (-value, 0.0), self._scale(context)) if value else start
         return Preview("moment", start, (x, start[1]), self.shown(value))
+
+
+class DrawSpanMoment(DrawSpanLoad):
+    """A moment at a place of a rod."""
+
+    tool, field = "moment", "moment"
+    asks = marked("moment on {rods}: click at its left (counter-clockwise) or right")
+    value, shown, preview = DrawMoment.value, DrawMoment.shown, DrawMoment.preview
+    finish = Drawing.finish
 
 
 class DrawVelocity(DrawArrow):
@@ -445,6 +516,12 @@ class TypePoint(Drawing):
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         point = self.end_typed(context, context.view.camera.to_model(pixel))
         return Preview("rod", point, point, written.place(point, written.DIGITS))
+
+
+def _along(context: Context, rod: Rod, pixel: Vector) -> float:
+    """How far from its start (m) a pixel lies on a rod, at a line of the grid if one is near."""
+    point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
+    return round(min(max(share_at(rod, point), 0.0), 1.0) * rod.original_length, 3)
 
 
 def _length_and_angle(start: Vector, end: Vector) -> str:

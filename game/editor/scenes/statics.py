@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pinjoint.components.bent import MOMENT
+from pinjoint.components.field import CM, on_screen
 from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.tags import DiagramShown
@@ -39,7 +40,10 @@ class Statics(Scene):
 
     def hint(self, context: Context) -> str:
         if pinned(context) is not None:
-            return tr("type x in cm     Esc or click again: take it away     Return properties     F1 help")
+            hint = marked(
+                "type x in {unit}     Esc or click again: take it away     Return properties     F1 help"
+            )
+            return tr(hint, unit=on_screen(CM[0])[0])
         if context.model.particles.count == 0:
             return tr("click a tool, then the canvas     right click menu     F1 help")
         return tr(

@@ -12,7 +12,7 @@ program. It runs only there.
     *kept       what driven.py puts back
     *observed   rods_axial_force, rods_length, rods_strain, yielding; fixed, tension, compression, yields
     insert(x)   the lines, or the expression, that the writer made for `x`
-    if BENDS:   lines that a program has only where members bend; so with LOADED (a distributed force acts on some), WARM
+    if BENDS:   lines that a program has only where members bend; so with LOADED (something acts between ends), WARM
                 (rods may have another rest length than the original one), MEETS (particles may meet), ALIKE (all steps
                 are of one length), LOADS (some load varies), FORESEES (both), and what the writer says of one template
 

@@ -107,21 +107,25 @@ def tangent_by():
 
 
 def end_moments():
-    """Moments on the ends by the laws of ends (`law`), the axial force in the bowed axis, and the distributed force.
+    """Moments on the ends by the laws of ends (`law`), the axial force in the bowed axis, and what acts between the ends.
 
-    That, along and across the chord, acts on the bent axis, so that it makes a couple.
+    Forces, along and across the chord, act on the bent axis, so that they make a couple. TURNED: couples act, too.
     """
     insert(law)
     thrust = axial_force * rest
     moment_start += thrust * bow_start
     moment_end += thrust * bow_end
     if LOADED:
-        tangential = rods_distributed_force[r, 0] * nx + rods_distributed_force[r, 1] * ny
-        transverse = rods_distributed_force[r, 1] * nx - rods_distributed_force[r, 0] * ny
-        area = rods_load_shares[r, 0] * slope_start + rods_load_shares[r, 1] * slope_end
-        couple = -tangential * area
-        moment_start -= transverse * rods_load_shares[r, 0]
-        moment_end -= transverse * rods_load_shares[r, 1]
+        across_start = rods_span_load[r, 1] * nx - rods_span_load[r, 0] * ny
+        across_end = rods_span_load[r, 4] * nx - rods_span_load[r, 3] * ny
+        couple = -(rods_span_load[r, 0] * nx + rods_span_load[r, 1] * ny) * slope_start
+        couple -= (rods_span_load[r, 3] * nx + rods_span_load[r, 4] * ny) * slope_end
+        if TURNED:
+            across_start += rods_span_load[r, 2]
+            across_end += rods_span_load[r, 5]
+            couple += rods_span_load[r, 6]
+        moment_start -= across_start
+        moment_end -= across_end
 
 
 def rate():
@@ -147,7 +151,9 @@ def stored():
         firmest = max(firmest, max(rods_end_stiffness[r, 0], rods_end_stiffness[r, 2]) / rest)
         insert(energies)
     if LOADED:
-        potential += transverse * area
+        potential += across_start * slope_start + across_end * slope_end
+        if TURNED:
+            potential += rods_span_load[r, 6] * chord
 
 
 def observed():

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.bent import distributed_shares
+from pinjoint.components.bent import borne_between
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import nodes
@@ -211,7 +211,7 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     particles = sheet.model.particles
     largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
     taken = np.full((len(sheet.centres), 2), NO_SUPPORT)  # by reactions: a side of each particle, by axis
-    applied = particles.applied_force - distributed_shares(sheet.model)  # rows of arrows show the others
+    applied = particles.applied_force - borne_between(sheet.model)  # rows of arrows show the others
     if sheet.model.first_order:
         left_out = ~nodes(sheet.model)
         applied[left_out] = full_load(sheet.model)[left_out, :2]
@@ -225,6 +225,7 @@ def largest_force(model: Model, view: View) -> float:
     """The largest force (kN) that an arrow may show: of loads at full size, and in diagrams of their parts and reactions."""
     particles = model.particles
     largest = float(np.hypot(*full_load(model)[:, :2].T).max(initial=SMALLEST))
+    largest = max(largest, float(np.hypot(*model.span_loads.force.T).max(initial=0.0)))
     if view.forces_known and (view.all_diagrams or model.any_tagged(DiagramShown)):
         for forces in (particles.applied_force, particles.reaction):
             largest = max(largest, float(np.abs(forces).max(initial=0.0)))

@@ -12,10 +12,11 @@ from typing import Literal
 
 import numpy as np
 
-from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, Axes, derivative, inner_forces, values, zeros
+from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, Axes, inner_forces
 from pinjoint.components.language import marked, tr
 from pinjoint.components.load import varying
 from pinjoint.components.model import Model
+from pinjoint.components.spans import Curves, zeros
 from pinjoint.components.tags import DiagramShown, Selected
 from pinjoint.components.view import MARGIN
 from pinjoint.systems.render.clip import clip_segments
@@ -72,13 +73,13 @@ _NEAR = 42.0  # points along a rod, or a step: so far from its end stands a valu
 _INSETS = ((0.0, 0.0), (6.0, 6.0), (12.0, -6.0), (18.0, 12.0), (25.0, -12.0), (33.0, 18.0))
 # Shares, where the lines may end, too.
 _ON_RODS = np.array([0.5, 0.35, 0.65, 0.2, 0.8, 0.28, 0.72, 0.12, 0.88, 0.43, 0.57])
-_PLACES = 3  # of values of a rod: start, end, between
+_PLACES = 6  # of values of a rod: start, end, and between
 
 
 @dataclass(frozen=True)
 class _Diagram:
-    """The diagram of some rods: rows (n,), their axes in pixels, values as polynomials, which of a rectangle have the
-    degree 0, pixels per kN or kN·m, largest value in the model.
+    """The diagram of some rods: rows (n,), their axes in pixels, values along them, constant of rectangles, pixels per kN or
+    kN·m, largest value in the model.
 
     side: 1 where positive values stand to the left, as drawn, else −1, (n,). points, normals, heights: at shares (n, k),
     with unit normals to where positive values stand;
@@ -88,7 +89,7 @@ class _Diagram:
     quantity: str
     rows: Rows
     base: Axes
-    polynomials: Values
+    curves: Curves
     scale: float
     largest: float
     side: Values
@@ -99,13 +100,13 @@ class _Diagram:
     @property
     def is_straight(self) -> bool:
         """Whether it consists of rectangles."""
-        return bool(self.polynomials.shape[1] == 1)
+        return bool(self.curves.polynomials.shape[1] == 1)
 
     def some(self, which: Truths | Rows) -> _Diagram:
         """The diagram of some of the rods."""
-        names = "rows", "polynomials", "side", "points", "normals", "heights"
+        names = "rows", "side", "points", "normals", "heights"
         columns = {name: getattr(self, name)[which] for name in names}
-        return replace(self, base=self.base.some(which), **columns)
+        return replace(self, base=self.base.some(which), curves=self.curves.some(which), **columns)
 
     def at(self, which: Rows, shares: Values) -> tuple[Points, Points]:
         """Points at shares (k,) of some of its rods, and unit normals to where positive values stand."""
@@ -157,9 +158,10 @@ def _rectangles(sheet: Sheet, rows: Rows, force: Values, start: Points, end: Poi
     way = end - start
     left = np.stack([way[:, 1], -way[:, 0]], axis=1) / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
     side = _outward(sheet, rows) * np.where(value[:, 0] < 0.0, -1.0, 1.0)
-    base = Axes(start, end, left, np.zeros((len(rows), 1)))
+    base = Axes(start, end, left, Curves.plain(np.zeros((len(rows), 1))))
     points, normals = np.stack([start, end], axis=1), (left * side[:, None])[:, None]
-    return _Diagram(AXIAL, rows, base, value, scale, largest, side, points, normals, scale * value)
+    curves = Curves.plain(value)
+    return _Diagram(AXIAL, rows, base, curves, scale, largest, side, points, normals, scale * value)
 
 
 def scale_step(largest: float, scale: float, room: float) -> float:
@@ -220,8 +222,8 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) 
     """The diagram of some rods, on the scale of all; None where there is nothing to be drawn."""
     model = sheet.model
     every = inner_forces(model, np.arange(model.rods.count), quantity)
-    every[~(np.abs(every) < _LARGEST).all(axis=1)] = 0.0
-    largest = float(np.abs(values(every, np.linspace(0.0, 1.0, 5))).max(initial=0.0))
+    every.polynomials[~(np.abs(every.polynomials) < _LARGEST).all(axis=1)] = 0.0
+    largest = float(np.abs(every.at(every.with_kinks(np.linspace(0.0, 1.0, 5)))).max(initial=0.0))
     if quantity == AXIAL:  # small ones, as bending shortens rods, look small
         shear = np.abs(model.rods.shear)
         largest = max(largest, _SHARE * float(shear[shear < _LARGEST].max(initial=0.0)))
@@ -231,26 +233,27 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) 
     fitting = max(largest, room * _crowding(sheet, every, side, taken))
     scale = room * model.settings.diagram_scale / steady(sheet, (f"diagrams.{quantity}", 0), fitting)
     scale = min(scale, _FAR / largest)
-    base, polynomials, side = _baseline(sheet, rows), every[rows], side[rows]
+    base, curves, side = _baseline(sheet, rows), every.some(rows), side[rows]
     most = np.clip(_PIECES // len(rows), 4, 24)  # more where rods are few and long
     shares = np.linspace(0.0, 1.0, int(np.clip(sheet.rod_length / (_PIECE * sheet.unit), 8, most)) + 1)
+    shares = curves.with_kinks(shares)
     points, normals = _stations(base, shares, side)
-    heights = scale * values(polynomials, shares)
-    found = _Diagram(quantity, rows, base, polynomials, scale, largest, side, points, normals, heights)
+    heights = scale * curves.at(shares)
+    found = _Diagram(quantity, rows, base, curves, scale, largest, side, points, normals, heights)
     near = (np.abs(points) < _FAR) & np.isfinite(normals)
     return found.some(np.asarray(near.all(axis=(1, 2))))
 
 
-def _crowding(sheet: Sheet, every: Values, side: Values, taken: float) -> float:
+def _crowding(sheet: Sheet, every: Curves, side: Values, taken: float) -> float:
     """The value per pixel up to which diagrams of all rods keep off the legend and the rim; 0 where the view is closer."""
     view = sheet.view
     if not view.shows(sheet.model):
         return 0.0
-    shares = np.linspace(0.0, 1.0, 5)
+    shares = every.with_kinks(np.linspace(0.0, 1.0, 5))
     points, normals = _stations(_baseline(sheet, np.arange(len(every))), shares, side)
     low, high = view.room.corners
     low[1] += taken
-    above = normals * values(every, shares)[..., None]
+    above = normals * every.at(shares)[..., None]
     free = np.maximum(np.where(above < 0.0, points - low, high - points), _LEAST * sheet.unit)
     return float(np.nan_to_num(np.abs(above) / free).max(initial=0.0))
 
@@ -262,7 +265,7 @@ def _baseline(sheet: Sheet, rows: Rows) -> Axes:
         camera.scale,
         -camera.scale,
     ]  # pixels' y is down, and what is ahead of a left side behind it
-    drift = None if found.drift is None else -found.drift
+    drift = None if found.drift is None else found.drift.times(-1.0)
     return Axes(camera.to_pixels(found.start), camera.to_pixels(found.end), left, found.bow, drift)
 
 
@@ -340,7 +343,7 @@ def _hatch(sheet: Sheet, diagram: _Diagram, drawn: Truths, colour: Colour, name:
     of = np.repeat(some, count)
     shares = (ranges(np.zeros_like(count), count) + 0.5) / np.repeat(count, count)
     start, normals = diagram.at(of, shares)
-    height = values(diagram.polynomials[of], shares[:, None])[:, 0]
+    height = diagram.curves.some(of).at(shares[:, None])[:, 0]
     if name in ("tension", "compression"):
         height = np.maximum(height, 0.0) if name == "tension" else np.minimum(height, 0.0)
     end = start + (diagram.scale * height)[:, None] * normals
@@ -351,7 +354,7 @@ def _mark_zeros(sheet: Sheet, diagram: _Diagram) -> None:
     """Small open circles where a curve changes sign between the ends of a rod."""
     if len(diagram.rows) > _MANY or diagram.is_straight:
         return
-    which, shares = zeros(diagram.polynomials)
+    which, shares = zeros(diagram.curves.stretches)
     large = np.abs(diagram.heights).max(axis=1) > 2.0 * sheet.unit
     kept = (shares > _INSIDE) & (shares < 1.0 - _INSIDE) & large[which]
     which, shares = which[kept], shares[kept]
@@ -401,7 +404,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
         edges = edge[:, None] + (ANCHORS[:, None] - 0.5) * way[:, None]
         anchors = np.concatenate([edges, at[:, None] + (_ON_RODS[:, None] - 0.5) * way[:, None]], axis=1)
     else:
-        inward = np.array([1.0, -1.0, 0.0])[number]
+        inward = np.array([1.0, -1.0, 0.0])[np.minimum(number, 2)]
         places = _places_by_curves(at, normal, along, height, inward, half, sheet.unit)
         anchors = _ends_of_lines(sheet, diagram, which, shares[shown], number)
         worth = worth + np.where(np.abs(value) > _GREAT * diagram.largest, 2e9, 0.0)  # before arrows
@@ -438,22 +441,32 @@ def _written(sheet: Sheet, quantity: str, value: float, nothing: float, few: boo
 
 def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:
     """Which values are told: of which rod of the diagram, at which of its places, the share there, and the value."""
-    count, polynomials, quantity = len(diagram.rows), diagram.polynomials, diagram.quantity
+    count, curves, quantity = len(diagram.rows), diagram.curves, diagram.quantity
     every = np.arange(count)
     if diagram.is_straight:
-        return every, np.full(count, 2), np.full(count, 0.5), polynomials[:, 0]
-    ends = values(polynomials, np.array([0.0, 1.0]))
+        return every, np.full(count, 2), np.full(count, 0.5), curves.polynomials[:, 0]
+    ends = curves.at(np.array([0.0, 1.0]))
     largest = diagram.largest
     least = max(_NOTHING * largest, SMALLEST)
     told = np.abs(ends) > least
-    which, shares = zeros(derivative(polynomials))
-    between = values(polynomials[which], shares[:, None])[:, 0]
+    which, shares = zeros(curves.derivative.stretches)
+    which, shares = np.append(which, curves.row), np.append(shares, curves.place)
+    which, shares = np.append(which, curves.row), np.append(shares, np.nextafter(curves.place, 0.0))
+    between = curves.some(which).at(shares[:, None])[:, 0]
     kept = (shares > _INSIDE) & (shares < 1.0 - _INSIDE) & (np.abs(between) > least)
     kept &= (np.abs(between[:, None] - ends[which]) > _ALIKE * largest).all(axis=1)
     which, shares, between = which[kept], shares[kept], between[kept]
     order = np.lexsort((-np.abs(between), which))  # of several in a rod the largest
-    first = order[np.unique(which[order], return_index=True)[1]]
-    which, shares, between = which[first], shares[first], between[first]
+    number = np.where(np.diff(which[order], prepend=-1) != 0, 0, _PLACES)
+    for row in np.unique(curves.row).tolist():  # where loads act inside, all that differ
+        told_here: list[float] = []
+        for at in range(*np.searchsorted(which[order], [row, row + 1]).tolist()):
+            value = float(between[order[at]])
+            known = any(abs(value - other) <= _ALIKE * largest for other in told_here)
+            number[at] = _PLACES if known else len(told_here)
+            told_here += [] if known else [value]
+    order, number = order[number < _PLACES - 2], number[number < _PLACES - 2]
+    which, shares, between = which[order], shares[order], between[order]
     same = np.abs(ends[:, 0] - ends[:, 1]) <= _ALIKE * largest
     same[which] = False
     middle = np.flatnonzero(same & (told.any(axis=1) | (quantity == AXIAL)))
@@ -465,9 +478,9 @@ def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:
     rod, end = np.nonzero(told)
     return (
         np.concatenate([rod, which, every[middle]]),
-        np.concatenate([end, np.full(len(which) + len(middle), 2)]),
+        np.concatenate([end, 2 + number, np.full(len(middle), 2)]),
         np.concatenate([end.astype(np.float64), shares, np.full(len(middle), 0.5)]),
-        np.concatenate([ends[rod, end], between, values(polynomials[middle], np.array([0.5]))[:, 0]]),
+        np.concatenate([ends[rod, end], between, curves.some(middle).at(np.array([0.5]))[:, 0]]),
     )
 
 
@@ -486,7 +499,7 @@ def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values, largest: float) -> 
     rows, repeated = diagram.rows, np.zeros(ends.shape, dtype=bool)
     joints = sheet.ends[rows]
     at = np.bincount(sheet.ends[sheet.model.rods.turning_shares > 0.0], minlength=len(sheet.centres))
-    slope = values(derivative(diagram.polynomials), np.array([0.0, 1.0])) * [1.0, -1.0]  # away from the end
+    slope = diagram.curves.derivative.at(np.array([0.0, 1.0])) * [1.0, -1.0]  # away from the end
     slope = slope / np.maximum(sheet.model.rods.rest_length[rows], 1e-300)[:, None] * np.sign(ends)
     way = (diagram.points[:, -1] - diagram.points[:, 0])[:, None] * np.array([[1.0], [-1.0]])
     way = way / np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-9)[..., None]
@@ -507,11 +520,13 @@ def _ends_of_lines(sheet: Sheet, diagram: _Diagram, which: Rows, shares: Values,
     """Where lines from values may end, (n, k, 2): on the edge of the diagram, in it, on the rod, then the same further along
     it, off the joint, where others begin, too."""
     length = np.hypot(*(diagram.base.end - diagram.base.start)[which].T)[:, None]
-    insets = np.array([(from_end, -from_end, between) for from_end, between in _INSETS])[:, ends].T
+    insets = np.array([(from_end, -from_end, between) for from_end, between in _INSETS])[
+        :, np.minimum(ends, 2)
+    ].T
     along = shares[:, None] + np.clip(insets * sheet.unit / np.maximum(length, 1e-9), -0.4, 0.4)
     along = np.clip(along, 0.0, 1.0)
     at, normal = _stations(diagram.base.some(which), along, diagram.side[which])
-    height = diagram.scale * values(diagram.polynomials[which], along)
+    height = diagram.scale * diagram.curves.some(which).at(along)
     up = np.array([1.0, 0.0, 0.5]) * height[..., None]
     return (at[:, :, None] + up[..., None] * normal[:, :, None]).reshape(len(which), -1, 2)
 

@@ -1,4 +1,4 @@
-"""Members that bend: hinges at their ends, distributed forces along them, and moments at their joints."""
+"""Members that bend: hinges at their ends, loads between these, and moments at their joints."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.bent import Axes
 from pinjoint.components.rod import rigid_joints
+from pinjoint.components.spans import Spans
 from pinjoint.components.tags import DiagramShown
 from pinjoint.systems.render.labels.nearness import ranges
 from pinjoint.systems.render.labels.occupancy import STRONG
@@ -14,6 +15,7 @@ from pinjoint.systems.render.labels.placing import ANCHORS
 from pinjoint.systems.render.marks import (
     Discs,
     Fills,
+    Owner,
     Owners,
     Points,
     Rows,
@@ -22,11 +24,20 @@ from pinjoint.systems.render.marks import (
     Truths,
     Values,
 )
-from pinjoint.systems.render.model.arrows import MOST, draw_arrows, full_load, head_length
+from pinjoint.systems.render.model.arrows import (
+    FORCES,
+    MOST,
+    draw_arrows,
+    full_load,
+    head_length,
+    largest_force,
+    lengths,
+)
 from pinjoint.systems.render.model.sheet import Sheet
 from pinjoint.systems.render.model.values import (
     FIRST,
     SMALLEST,
+    by_arrows,
     half_sizes,
     off,
     said,
@@ -43,6 +54,7 @@ _SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn
 # Points, lengths of the arrows of the smallest and the largest distributed force, usually and beside diagrams.
 _ROW, _LOW_ROW = (11.0, 22.0), (5.0, 11.0)
 _APART = 15.0  # points between them
+_NO_ARROW = 2.0  # points, of a shorter one
 _MOST_ARROWS = 40  # of a rod
 _FAR = 1e6  # pixels; what is beyond is left out
 _BESIDE = 5.0  # points between a rod and arrows along it
@@ -111,74 +123,164 @@ def gaps(lengths: Values, unit: float) -> Values:
     return found
 
 
-# --- distributed forces ------------------------------------------------------------------------------
+# --- loads between ends ------------------------------------------------------------------------------
 
 
-def draw_distributed_forces(sheet: Sheet) -> None:
-    """A row of arrows along each rod with a distributed force, on the side from which it pushes, and its value."""
-    force = sheet.model.rods.distributed_force * sheet.model.share
-    loaded = np.flatnonzero(force[sheet.rods].any(axis=1))
-    if not 0 < len(loaded) <= MOST:
+def draw_span_loads(sheet: Sheet) -> None:
+    """What acts between the ends of rods: rows of arrows on the side from which they push, single arrows, curved ones."""
+    spans = Spans.of(sheet.model)
+    if not len(spans.row):
         return
-    rows, u, colour = sheet.rods[loaded], sheet.unit, sheet.theme.load
-    size = np.hypot(*force[rows].T)
-    along = force[rows] * [1.0, -1.0] / size[:, None]
+    largest = sheet.model.share * max(float(np.hypot(*force.T).max()) for force in (spans.first, spans.last))
+    spans = spans.some(np.isin(spans.row, sheet.rods))
+    spread = (spans.first.any(axis=1) | spans.last.any(axis=1)) & (spans.end > spans.start)
+    _draw_rows(sheet, spans.some(spread), largest)
+    _draw_points(sheet, spans)
+
+
+def _draw_rows(sheet: Sheet, spans: Spans, largest: float) -> None:
+    """Rows of arrows, of the largest of which so much is told; of rods' own that are alike once, of others at both ends."""
+    if not 0 < len(spans.row) <= MOST:
+        return
+    force = np.stack([spans.first, spans.last], axis=1) * sheet.model.share
+    u, colour, sizes = sheet.unit, sheet.theme.load, np.hypot(*np.moveaxis(force, -1, 0))
+    size, each = sizes.max(axis=1), np.arange(len(spans.row))
+    along = force[each, sizes.argmax(axis=1)] * [1.0, -1.0] / np.maximum(size, 1e-300)[:, None]
     least, most = _LOW_ROW if sheet.view.all_diagrams and sheet.view.forces_known else _ROW
-    height = (least + (most - least) * size / np.hypot(*force.T).max()) * u
-    which, tips, shifted = _tips(sheet, rows, along)
-    level, every = np.where(shifted, _APART * u, height)[which], along[which]
-    tails, of = tips - level[:, None] * every, ("rods", rows[which])
+    height = (least + (most - least) * size / largest) * u
+    which, tips, shifted, part = _tips(sheet, spans, along)
+    every = (force[which, 0] + part[:, None] * (force[which, 1] - force[which, 0])) * [1.0, -1.0]
+    share = np.hypot(*every.T) / size[which]  # of its largest
+    level = np.where(shifted[which], _APART * u, height[which] * share)
+    every = np.where(
+        shifted[which, None], along[which], every / np.maximum(share * size[which], 1e-300)[:, None]
+    )
+    tails, rows = tips - level[:, None] * every, spans.row[which]
     first = np.flatnonzero((which[:-1] == which[1:]) & ~shifted[which[1:]])
-    line, of_line = (tails[first], tails[first + 1]), ("rods", rows[which[first]])  # through the tails
+    line, of_line = (tails[first], tails[first + 1]), ("rods", rows[first])  # through the tails
     sheet.marks.append(Strokes(*line, 1.25 * u, colour, of_line))
     sheet.occupancy.line(*line, STRONG, of_line)
     sheet.occupancy.parts.add(of_line, *line, u)
-    draw_arrows(sheet, of, tails, every, level, colour, of, 1.25)
+    seen = level > _NO_ARROW * u
+    of = "rods", rows[seen]
+    draw_arrows(sheet, of, tails[seen], every[seen], level[seen], colour, of, 1.25)
     sheet.explain("load per length", tails, tips)
-    told = _told(sheet, loaded)
-    for k in [k for k in np.unique(which).tolist() if int(loaded[k]) in told]:
-        _label_row(sheet, int(rows[k]), tails[which == k], along[k], float(size[k]), bool(shifted[k]))
+    told = _told(sheet, spans)
+    for k in [k for k in np.unique(which).tolist() if k in told]:
+        load, row, own, out = int(spans.load[k]), int(spans.row[k]), tails[which == k], -along[k]
+        if load < 0 or (spans.first[k] == spans.last[k]).all():
+            key = ("rods.distributed_force", row) if load < 0 else ("span_loads.end_intensity", load)
+            _label_row(sheet, key, row, own, out, float(size[k]), bool(shifted[k]))
+        else:
+            for end, name in ((0, "start"), (-1, "end")):
+                if value := float(sizes[k, end]):
+                    key, at = (f"span_loads.{name}_intensity", load), np.repeat(own[[end]], 2, axis=0)
+                    _label_row(sheet, key, row, at, out, value, bool(shifted[k]))
 
 
-def _told(sheet: Sheet, loaded: Rows) -> set[int]:
-    """The rods whose value is told: of those with the same force that follow one another, the one in the middle."""
-    chains: list[tuple[set[tuple[float, ...]], list[int]]] = []  # joints of each, and rods
-    force = sheet.model.rods.distributed_force
-    for index in loaded.tolist():
-        row = sheet.rods[index]
-        joints, rods = {(*force[row].tolist(), joint) for joint in sheet.ends[row].tolist()}, [index]
+def _draw_points(sheet: Sheet, spans: Spans) -> None:
+    """Arrows and curved arrows at places of rods, with their values."""
+    share, u, colour = sheet.model.share, sheet.unit, sheet.theme.load
+    way = np.diff(sheet.centres[sheet.ends[spans.row]], axis=1)[:, 0]
+    start = _shares_seen(sheet, spans, np.hypot(*way.T))[0]
+    at = sheet.view.camera.to_pixels(Axes.of(sheet.model, spans.row).points(start[:, None])[:, 0])
+    near, load = (np.abs(at) < _FAR).all(axis=1), spans.load
+    some = np.flatnonzero(near & spans.force.any(axis=1))[:MOST]
+    if len(some):
+        force, of, rows = share * spans.force[some], ("rods", spans.row[some]), spans.row[some]
+        size = np.maximum(np.hypot(*force.T), 1e-300)
+        along = force * [1.0, -1.0] / size[:, None]
+        largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
+        length = lengths(sheet, FORCES, size, max(largest, float(size.max())))
+        tip = at[some] - 1.5 * u * along
+        tail = tip - length[:, None] * along
+        draw_arrows(sheet, of, tail, along, length, colour, ("span_loads.force", load[some]))
+        sheet.explain("load", tail, tip)
+        for k, value in enumerate(size.tolist()):
+            text, key = written.stated(value, "kN", written.DIGITS), ("span_loads.force", int(load[some[k]]))
+            places = by_arrows(half_sizes(sheet, [text])[0], tip[k], tail[k], 3.0 * u)
+            leads = np.array([tail[k], 0.5 * (tail[k] + tip[k])]), -along[k]
+            write(
+                sheet,
+                text,
+                places,
+                colour,
+                key,
+                ("rods", int(rows[k])),
+                rank=FIRST - value,
+                own=key,
+                leads=leads,
+            )
+    some = np.flatnonzero(near & (spans.moment != 0.0))[:MOST]
+    if len(some):
+        moment, radius = share * spans.moment[some], np.full(len(some), _ARC["load"] * u)
+        draw_arcs(
+            sheet,
+            ("rods", spans.row[some]),
+            at[some],
+            radius,
+            moment,
+            colour,
+            "span_loads.moment",
+            parts=load[some],
+        )
+        sheet.explain("load moment", at[some], at[some])
+        for k, value in zip(some.tolist(), moment.tolist(), strict=True):
+            key, rod = ("span_loads.moment", int(load[k])), int(spans.row[k])
+            write_moment(sheet, at[k], float(radius[0]), value, colour, key, of=("rods", rod))
+
+
+def _told(sheet: Sheet, spans: Spans) -> set[int]:
+    """Those whose value is told: of rods' own with the same force that follow one another, the one in the middle."""
+    chains: list[tuple[set[tuple[float, ...]], list[int]]] = []  # joints of each, and which
+    for index in np.flatnonzero(spans.load < 0).tolist():
+        ends = sheet.ends[spans.row[index]].tolist()
+        joints, own = {(*spans.first[index].tolist(), joint) for joint in ends}, [index]
         for chain in [chain for chain in chains if chain[0] & joints]:
             chains.remove(chain)
-            joints, rods = joints | chain[0], chain[1] + rods
-        chains.append((joints, rods))
-    return {rods[len(rods) // 2] for _, rods in chains}
+            joints, own = joints | chain[0], chain[1] + own
+        chains.append((joints, own))
+    return {own[len(own) // 2] for _, own in chains} | set(np.flatnonzero(spans.load >= 0).tolist())
 
 
-def _tips(sheet: Sheet, rows: Rows, along: Points) -> tuple[Rows, Points, Truths]:
-    """Where the arrows of distributed forces end on rods, and which rod's each is; or, where one acts along its rod, beside
-    it, which is told by rod."""
-    u = sheet.unit
+def _tips(sheet: Sheet, spans: Spans, along: Points) -> tuple[Rows, Points, Truths, Values]:
+    """Where the arrows of distributed forces end on rods, which force's each is, and which share of its way from its start;
+    or, where one acts along its rod, beside it, which is told by force."""
+    u, rows = sheet.unit, spans.row
     way = np.diff(sheet.centres[sheet.ends[rows]], axis=1)[:, 0]
     length = np.hypot(*way.T)
     shifted = np.abs((along * way).sum(axis=1)) > 0.97 * length
-    apart = gaps(length, u) / np.maximum(length, 1e-300) if sheet.view.free_bodies else np.zeros(len(rows))
-    seen = 1.0 - 2.0 * apart
+    low, high = _shares_seen(sheet, spans, length)
+    seen = high - low
     count = np.clip(np.nan_to_num(np.round(seen * length / (_APART * u))), 2, _MOST_ARROWS).astype(np.intp)
-    many = np.where(length < 2.0 * _APART * u, 0, np.where(shifted, count, count + 1))
+    many = np.where(shifted, count, count + 1)
+    many[np.where(spans.load < 0, 0.5, seen) * length < _APART * u] = 0
     which = np.repeat(np.arange(len(rows)), many)
     number = ranges(np.where(shifted, 1, 0), many)
-    shares = apart[which] + number / count[which] * seen[which]
+    shares = low[which] + number / count[which] * seen[which]
     points = Axes.of(sheet.model, rows).some(which).points(shares[:, None])[:, 0]
     across = way[:, ::-1] * [1.0, -1.0] / np.maximum(length, 1e-300)[:, None]
     beside = _BESIDE * across * np.where(across[:, 1:] <= 0.0, 1.0, -1.0)
     tips = sheet.view.camera.to_pixels(points) + u * np.where(shifted[:, None], beside, -1.5 * along)[which]
     near = (np.bincount(which, ~(np.abs(tips) < _FAR).all(axis=1), len(rows)) == 0.0)[which]
-    return which[near], tips[near], shifted
+    part = number / count[which]
+    return which[near], tips[near], shifted, part[near]
 
 
-def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float, shifted: bool) -> None:
+def _shares_seen(sheet: Sheet, spans: Spans, length: Values) -> tuple[Values, Values]:
+    """From which share to which loads are drawn on rods of these lengths in pixels, which are shorter where drawn apart."""
+    if not sheet.view.free_bodies:
+        return spans.start, spans.end
+    apart = gaps(length, sheet.unit) / np.maximum(length, 1e-300)
+    low, high = (apart + share * (1.0 - 2.0 * apart) for share in (spans.start, spans.end))
+    return low, high
+
+
+def _label_row(
+    sheet: Sheet, key: tuple[str, int], row: int, tails: Points, out: Points, size: float, shifted: bool
+) -> None:
     text, u = written.stated(size, "kN/m", written.DIGITS), sheet.unit
-    way, out = tails[-1] - tails[0], -along
+    way = tails[-1] - tails[0]
     if shifted:
         out = np.array([way[1], -way[0]]) / max(float(np.hypot(*way)), 1e-9)
         out = out if out[1] <= 0.0 else -out
@@ -187,7 +289,7 @@ def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float
     places, of = np.concatenate([near, near + out * 12.0 * u]), ("rods", row)
     at = shares * (len(tails) - 1.0)
     anchors = np.stack([np.interp(at, np.arange(len(tails)), part) for part in tails.T], axis=1)
-    key, rank = ("rods.distributed_force", row), FIRST - size
+    rank = FIRST - size
     write(sheet, text, places, sheet.theme.load, key, of, rank=rank, own=of, leads=(anchors, out), short=text)
 
 
@@ -239,11 +341,12 @@ def draw_arcs(
     key: str,
     middle: float = np.pi / 2.0,
     sweep: float = _SWEEP,
+    parts: Rows | None = None,
 ) -> None:
     """Curved arrows about points (n, 2), of radii (n,), that turn as moments (n,) do, counter-clockwise if positive.
 
     They reach so far (sweep) around a middle, in radians: the usual ones are open below. key: of these parts of the
-    picture, beside the rows of their elements.
+    picture, beside the rows of their elements, or others.
     """
     if not len(at):
         return
@@ -254,25 +357,33 @@ def draw_arcs(
     angle = middle + turn[:, None] * angle  # from the right, over the top
     points = at[:, None] + radius[:, None, None] * np.stack([np.cos(angle), -np.sin(angle)], axis=2)
     first, last = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2)
-    every = np.repeat(rows, _PIECES)
+    every, own = np.repeat(rows, _PIECES), rows if parts is None else parts
     forward = points[:, -1] - points[:, -2]
     forward /= np.hypot(*forward.T)[:, None]
     neck, across = points[:, -1], forward[:, ::-1] * [-1.0, 1.0]
     tip, barb = neck + head[:, None] * forward, 0.5 * head[:, None] * across
-    sheet.occupancy.line(first, last, STRONG, (key, every))
-    for parts in ((first, last, every), (neck - barb, neck + barb, rows), (neck, tip, rows)):
-        sheet.occupancy.parts.add((key, parts[2]), *parts[:2], u)
+    sheet.occupancy.line(first, last, STRONG, (key, np.repeat(own, _PIECES)))
+    for ends in ((first, last, np.repeat(own, _PIECES)), (neck - barb, neck + barb, own), (neck, tip, own)):
+        sheet.occupancy.parts.add((key, ends[2]), *ends[:2], u)
     sheet.marks.append(Strokes(first, last, 1.75 * u, colour, (table, every)))
     sheet.marks.append(Fills(np.stack([tip, neck + barb, neck - barb], axis=1), colour, (table, rows)))
 
 
 def write_moment(
-    sheet: Sheet, at: Points, radius: float, moment: float, colour: Colour, key: tuple[str, int], text: str = ""
+    sheet: Sheet,
+    at: Points,
+    radius: float,
+    moment: float,
+    colour: Colour,
+    key: tuple[str, int],
+    text: str = "",
+    of: Owner | None = None,
 ) -> None:
-    """Write the size of a moment outside its arrow; text: in place of the number as a person gave it."""
+    """Write the size of a moment outside its arrow; text: in place of the number as a person gave it; of: not a particle."""
     bare = written.given(abs(moment), written.DIGITS)
     text = text or (written.stated(abs(moment), "kN·m", written.DIGITS) if sheet.view.has_units else bare)
     angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
     out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
     short = text if key[0] == "particles.reaction_moment" else ""
-    write_around(sheet, at, radius, out, text, colour, (key, ("particles", key[1]), key), abs(moment), short)
+    whose = key, of or ("particles", key[1]), key
+    write_around(sheet, at, radius, out, text, colour, whose, abs(moment), short)

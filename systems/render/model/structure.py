@@ -10,6 +10,7 @@ import numpy as np
 from pinjoint.components.bent import FLAT, Axes, Parts, drawn_scale
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.round_numbers import round_up
+from pinjoint.components.spans import Curves
 from pinjoint.components.tags import Hovered, Selected
 from pinjoint.components.view import Shape
 from pinjoint.systems.render.clip import clip_segments
@@ -262,9 +263,9 @@ def _lines_of_shape(
 ) -> tuple[Points, Points]:
     """Visible pieces of rods in pixels, displaced from these positions by so much of a shape."""
     rows, displacement = np.arange(len(parts.between)), swing * shape.displacement
-    moved, straight = position + displacement, np.zeros((len(rows), 5))
+    moved, straight = position + displacement, np.zeros((len(rows), 2))
     start, end = moved[parts.between.T]
-    axes = Axes(start, end, straight[:, :2], straight)
+    axes = Axes(start, end, straight, Curves.plain(straight))
     if shape.rotation is not None:
         axes = Axes.moved(parts, moved, displacement, swing * shape.rotation)
     return _lines(sheet, axes, rows)

@@ -17,10 +17,10 @@ from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Points, Stam
 from pinjoint.systems.render.model.arrows import draw_loads, draw_velocities
 from pinjoint.systems.render.model.diagrams import draw_diagrams
 from pinjoint.systems.render.model.members import (
-    draw_distributed_forces,
     draw_hinges,
     draw_inextensible,
     draw_moments,
+    draw_span_loads,
 )
 from pinjoint.systems.render.model.sheet import measure
 from pinjoint.systems.render.model.structure import draw_particles, draw_rods
@@ -116,7 +116,7 @@ def _marks(model: Model, camera: Camera, unit: float, theme: Theme) -> tuple[Mar
     draw_particles(sheet)
     draw_hinges(sheet)
     draw_inextensible(sheet)
-    draw_distributed_forces(sheet)
+    draw_span_loads(sheet)
     sheet.view.all_diagrams = False  # arrows of one length; the values of diagrams are left out
     draw_moments(sheet)
     draw_loads(sheet)

@@ -184,6 +184,14 @@ def test_keys_belong_to_the_text_only_while_a_tool_is_in_hand() -> None:
     assert label(session)[0] == "-2 kN@45|"
 
 
+def test_statics_says_nothing_of_keys_that_are_typed() -> None:
+    session = beam()
+    session.press("q")
+    session.press("f", session.point(4.0, 0.0))
+    typed(session, "-20.5")
+    assert session.notice == ""
+
+
 def test_a_click_ends_at_what_is_typed() -> None:
     session = new("l")
     session.click(0.0, 0.0)
