@@ -13,13 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from pinjoint.components import written
-from pinjoint.components.bent import Axes, Parts, extremes
+from pinjoint.components.bent import Axes, Parts
 from pinjoint.components.field import ENDS, Column
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import supported
 from pinjoint.components.rod import Rod, bends
+from pinjoint.components.spans import Curves, extremes
 from pinjoint.components.view import Shape
 from pinjoint.documents.shapes import NoShape, drawn_share
 from pinjoint.systems.statics.equations import AXES
@@ -86,7 +87,7 @@ class Influence:
         """What a unit force downwards does on every rod, as polynomials of the share of its length, (rods, 5)."""
         parts, moved = self._moved(model)
         axes = Axes.moved(parts, parts.position + moved[:, :2], moved[:, :2], moved[:, 2])
-        lines = -axes.left[:, 1:] * axes.bow
+        lines = -axes.left[:, 1:] * axes.bow.polynomials
         start, end = moved[parts.between, 1].T
         lines[:, 0] -= start
         lines[:, 1] -= end - start
@@ -100,7 +101,7 @@ class Influence:
         Each is a value, the rod where it is, and how far from its start (m).
         """
         rows = np.array([model.rods[name].row for name in path] or range(model.rods.count), dtype=np.intp)
-        found, shares = extremes(self.along(model)[rows])
+        found, shares = extremes(Curves.plain(self.along(model)[rows]).stretches)
         found = np.where(np.abs(found) > written.ROUNDING * np.abs(found).max(), found, 0.0)
         for key, which, row in (
             ("least", 0, int(found[:, 0].argmin())),

@@ -8,8 +8,8 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
-from pinjoint.components.bent import values
 from pinjoint.components.model import Model
+from pinjoint.components.spans import values
 from pinjoint.documents import models
 from pinjoint.documents.influence import Influence
 from pinjoint.systems.edit.dividing import divide
