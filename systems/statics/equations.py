@@ -296,7 +296,8 @@ class Structure:
         """What unknowns are multiplied by where they are compared, (N,): rotations, by the mean length (m) of what bends."""
         measure = np.ones(self.unknown.shape)
         if self.bending is not None:
-            measure[:, 2] = self.rest_length[self.bending.rigid.any(axis=1)].mean()
+            bent = self.bending.rigid.any(axis=1)
+            measure[:, 2] = self.rest_length[bent].mean() if bent.any() else 1.0
         return self._of_unknowns(measure)
 
     def largest(self, field: Array) -> float:
