@@ -155,8 +155,11 @@ def plot_picture(plot: Plot, path: Path, theme: str = "light") -> None:
     box = Rectangle(16.0 * unit, 8.0 * unit, size[0] - 32.0 * unit, size[1] - 16.0 * unit)
     marks = draw_plot(plot, box, colours, unit, None)
     picture = Picture(Viewport(0, 0, *size), colours.background, marks)
-    made = {
-        ".svg": lambda: as_svg([(picture, lambda owner: "")], size, plot.x_title),
-        ".pdf": lambda: as_pdf([picture], size, plot.x_title),
-    }.get(path.suffix.lower(), lambda: _as_image([picture], size, ".png", clear=False))
-    models.replace(path, made())
+    suffix = path.suffix.lower()
+    if suffix == ".svg":
+        made = as_svg([(picture, lambda owner: "")], size, plot.x_title)
+    elif suffix == ".pdf":
+        made = as_pdf([picture], size, plot.x_title)
+    else:
+        made = _as_image([picture], size, ".png", clear=False)
+    models.replace(path, made)
