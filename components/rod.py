@@ -136,6 +136,10 @@ class Rod(Handle):
         dtype=bool,
         doc="A cable: it bears tension only, and is slack when its ends are closer than its rest length.",
     )
+    inextensible: Field[bool] = Field(
+        dtype=bool,
+        doc="In first-order theory it keeps its length, whatever EA is, and does not yield; elsewhere it has its EA.",
+    )
     prescribed_bending_stiffness: Field[float | None] = Field(
         "kN·m²",
         nullable=True,
@@ -298,6 +302,12 @@ class Rod(Handle):
                     "{rod}: its ends are at the same place; move one of them or give it a rest length above 0.",
                     rod=table.world.describe(table[row]),
                 )
+        if "inextensible" in changed or "tension_only" in changed:
+            for row in rows[table.inextensible[rows] & table.tension_only[rows]][:1].tolist():
+                raise FieldError(
+                    "{rod}: a cable cannot be inextensible; let it bear compression, too, or have an EA.",
+                    rod=table.world.describe(table[row]),
+                )
         if "section" in changed or not _NUMBERS_OF_NAMES.isdisjoint(changed):
             _heed_names(table, rows, changed)
         if "temperature_change" in changed or "thermal_expansion" in changed:
@@ -431,6 +441,17 @@ def idle_moment(world: World) -> str:
             " nothing. Join a rod rigidly or remove the moment.",
             particle=begun(world.describe(particles[row])),
             moment=moment[row],
+        )
+    return ""
+
+
+def extensible_elsewhere(world: World) -> str:
+    """The sentence about inextensible rods where their EA counts all the same; "" if there are none."""
+    rods = world.tables["rods"]
+    for row in np.flatnonzero(rods.inextensible)[:1].tolist():
+        return tr(
+            "Only first-order theory takes {rod} for inextensible; here its EA counts.",
+            rod=world.describe(rods[row]),
         )
     return ""
 

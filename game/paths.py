@@ -267,12 +267,14 @@ class Quantity:
     """A number that can be read at any moment.
 
     name: fact and element. unit: that on screen. read: the value in this unit; NaN while the element is deleted.
+    factor: to this unit from that of paths.
     """
 
     path: str
     name: str
     unit: str
     read: Callable[[Any], float]  # of a session
+    factor: float = 1.0
 
     @property
     def title(self) -> str:
@@ -309,7 +311,7 @@ def quantity(model: Model, path: str) -> Quantity:
         value = session.model.column(f"{handle.table}.{field.name}")[handle.row]
         return float(target.part(value)) * factor
 
-    return Quantity(path, tr(title, **told), unit, read)
+    return Quantity(path, tr(title, **told), unit, read, factor)
 
 
 def _numbers(table: Table[Any]) -> Mapping[str, Field[Any]]:

@@ -246,9 +246,7 @@ def said_of(session: Session, path: str) -> tuple[str, float, str]:
         found = quantity(session.model, path)
     except PathError:
         return "", 1.0, tr(_NAMES[path]) if path in _NAMES else path
-    value = read(session, path)
-    factor = found.read(session) / value if isinstance(value, int | float) and value else 1.0
-    return found.unit, factor, tr(_NAMES[path]) if path in _NAMES else begun(found.name)
+    return found.unit, found.factor, tr(_NAMES[path]) if path in _NAMES else begun(found.name)
 
 
 def _shown_number(session: Session, path: str) -> float:

@@ -22,7 +22,12 @@ from pinjoint.systems.render.model.arrows import draw_loads, draw_particle_diagr
 from pinjoint.systems.render.model.cuts import draw_cuts
 from pinjoint.systems.render.model.diagrams import draw_diagrams
 from pinjoint.systems.render.model.free_bodies import draw_free_bodies
-from pinjoint.systems.render.model.members import draw_hinges, draw_moments, draw_span_loads
+from pinjoint.systems.render.model.members import (
+    draw_hinges,
+    draw_inextensible,
+    draw_moments,
+    draw_span_loads,
+)
 from pinjoint.systems.render.model.sheet import MANY, Sheet, Shown, Stage, measure
 from pinjoint.systems.render.model.structure import (
     draw_deflected,
@@ -134,6 +139,7 @@ def _draw_structure(sheet: Sheet) -> None:
     draw_rods(sheet)
     draw_particles(sheet)
     draw_hinges(sheet)
+    draw_inextensible(sheet)
     sheet.marks += sheet.above
     draw_cuts(sheet)
     draw_shape(sheet)

@@ -16,7 +16,7 @@ from pinjoint.components.field import Column, Role
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import immovable, incomputable
-from pinjoint.components.rod import idle_moment
+from pinjoint.components.rod import extensible_elsewhere, idle_moment
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.world import Derivation
 from pinjoint.systems.base import REVIEW_INTERVAL, Integrator, StepSystem, StopReason
@@ -184,7 +184,9 @@ class Simulation:
             if not problem:
                 parted = self._parted() if self.programs.collides else ""
                 self.program.commit()  # rods that edits left beyond a strength yield
-                self.note = joined([self.programs.note, parted, idle_moment(self.model)])
+                self.note = joined(
+                    [self.programs.note, parted, idle_moment(self.model), extensible_elsewhere(self.model)]
+                )
                 self._account.close()
                 self._sleep.review(self.program)
                 self.step_size.begin(self.step_size.first())

@@ -21,7 +21,7 @@ from pinjoint.components.language import plural, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.particle import supported
-from pinjoint.components.rod import bears_between
+from pinjoint.components.rod import bears_between, extensible_elsewhere
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import needed_parts
@@ -339,6 +339,8 @@ def _notes(model: Model, factors: Array, lowest: Array, about: StaticState | Sta
     if not len(factors):
         return []
     rods, notes = model.rods, []
+    if elsewhere := extensible_elsewhere(model):
+        notes.append(elsewhere)
     if about is not None:
         notes.append(
             tr(

@@ -19,6 +19,7 @@ import numpy as np
 from pinjoint.components.model import Model
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import Array, Rows, Structure
+from pinjoint.systems.statics.explain import rod_names
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.force_method import real_structure
 from pinjoint.systems.statics.superposition import SetState, Superposition
@@ -71,6 +72,12 @@ def solve(model: Model) -> Solution:
             " solves it as it is.",
             count=count,
             most=MOST,
+        )
+    if len(firm := whole.inextensible):
+        raise MethodError(
+            "Unknown displacements are shown with the EA of all rods, but {rods} counts as inextensible. Let it have its EA;"
+            " statics solves the structure as it is.",
+            rods=rod_names(model, firm[:1]),
         )
     released, real = real_structure(model)
     held = replace(whole, fixed=whole.fixed | whole.unknown, unknown=np.zeros_like(whole.unknown))

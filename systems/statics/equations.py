@@ -135,7 +135,8 @@ class Structure:
     sense: 1 for cables (tension only), −1 for contacts (compression only), else 0.
     own_weight: stiffness added to that of its rods in the `weight` of a particle (kN/m), (n,).
     flat: rods whose axis keeps its direction, such as contacts with a straight side.
-    first_order: elongations and equilibrium about the original positions.
+    first_order: elongations and equilibrium about the original positions. inextensible: rows of the rods that keep their
+        lengths, which first-order theory alone heeds.
     bending: of the rods; None where none bends. sparse: matrices are, above DENSE unknowns.
     """
 
@@ -157,6 +158,7 @@ class Structure:
     own_weight: Array
     flat: Flags
     first_order: bool
+    inextensible: Rows
     bending: Bending | None = None
     sparse: bool = True
 
@@ -167,6 +169,7 @@ class Structure:
             raise WrongValue("Theory is '{theory}'; it must be 'first-order' or 'exact'.", theory=theory)
         particles, rods = model.particles, model.rods
         yields = bool(model.settings.plasticity)
+        firm = rods.inextensible & (theory == FIRST_ORDER)
         ends = rods.between.astype(np.intp)
         body = np.unique(lowest_joined(particles.count, ends), return_inverse=True)[1]
         bending = Bending.of(model, bows=theory == EXACT) if bends(model) else None
@@ -183,8 +186,8 @@ class Structure:
             rest_length=rods.rest_length.copy(),
             misfit=rods.misfit.copy(),
             stiffness=rods.stiffness.copy(),
-            tension_limit=rods.tension_limit.copy() if yields else np.full(rods.count, np.inf),
-            compression_limit=rods.compression_limit.copy() if yields else np.full(rods.count, np.inf),
+            tension_limit=np.where(yields & ~firm, rods.tension_limit, np.inf),
+            compression_limit=np.where(yields & ~firm, rods.compression_limit, np.inf),
             sense=rods.tension_only.astype(np.float64),
             fixed=fixed,
             springs=springs,
@@ -194,6 +197,7 @@ class Structure:
             own_weight=np.zeros(particles.count),
             flat=np.zeros(rods.count, dtype=bool),
             first_order=theory == FIRST_ORDER,
+            inextensible=np.flatnonzero(firm),
             bending=bending,
         )
 
@@ -292,7 +296,8 @@ class Structure:
         """What unknowns are multiplied by where they are compared, (N,): rotations, by the mean length (m) of what bends."""
         measure = np.ones(self.unknown.shape)
         if self.bending is not None:
-            measure[:, 2] = self.rest_length[self.bending.rigid.any(axis=1)].mean()
+            bent = self.bending.rigid.any(axis=1)
+            measure[:, 2] = self.rest_length[bent].mean() if bent.any() else 1.0
         return self._of_unknowns(measure)
 
     def largest(self, field: Array) -> float:
@@ -649,8 +654,10 @@ class Structure:
 
     def _turned(self, parts: Array) -> Array:
         """Matrices of rods, (rods, 2 × width, 2 × width), of the coordinates along the axes of supports."""
-        parts = self._by_supports(parts.reshape(len(self.ends), 2 * self.width, -1), self.ends)
-        return self._by_supports(parts.swapaxes(1, 2), self.ends)
+        parts = parts.reshape(len(self.ends), 2 * self.width, 2 * self.width)
+        if not self.angle.any():
+            return parts
+        return self._by_supports(self._by_supports(parts, self.ends).swapaxes(1, 2), self.ends)
 
     def _by_supports(self, by_ends: Array, ends: Rows) -> Array:
         """Of rows (k, …, coordinates of two particles) those by their coordinates along the axes of supports."""

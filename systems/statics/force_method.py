@@ -191,6 +191,7 @@ class Released:
             with_all,
             stiffness=np.where(bars, 0.0, whole.stiffness),
             springs=np.where(supports, 0.0, whole.springs),
+            inextensible=whole.inextensible[~bars[whole.inextensible]],
             bending=bending,
         )
         self.theory = FirstOrder(model, released, with_all)
@@ -263,7 +264,7 @@ def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequ
     n = np.array([unit.axial_force for unit in units]).reshape(count, rods.count, 1)
     m = np.array([unit.bending_moment for unit in units]).reshape(count, rods.count, 2)
     length, bends = rods.rest_length, rods.bending_stiffness > 0.0
-    softness, turning = length / rods.stiffness, np.zeros(rods.count)
+    softness, turning = np.where(rods.inextensible, 0.0, length / rods.stiffness), np.zeros(rods.count)
     np.divide(length, rods.bending_stiffness, out=turning, where=bends)
     curvature = -rods.thermal_expansion * rods.temperature_gradient * bends
     # ∫ m M dξ by the values at both ends, and what springs there add: EI/(k L₀) m M.

@@ -23,13 +23,20 @@ from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.rod import extensible_elsewhere
 from pinjoint.components.theory import EXACT
 from pinjoint.components.wording import quoted
 from pinjoint.systems.statics.bending import needed_parts
 from pinjoint.systems.statics.contacts import Discs, Sinking
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from pinjoint.systems.statics.events import Event, NoEquilibrium
-from pinjoint.systems.statics.explain import describe_motion, divide_named, nothing_stops, slack_named
+from pinjoint.systems.statics.explain import (
+    describe_motion,
+    divide_named,
+    nothing_stops,
+    rod_names,
+    slack_named,
+)
 from pinjoint.systems.statics.external import External, loose_bodies
 from pinjoint.systems.statics.factor import SOFT, SURELY_HELD, regular, soft_modes, softest
 from pinjoint.systems.statics.follow import Path, Point
@@ -169,7 +176,9 @@ class _Settling:
         self.model = model
         self.structure = Structure.of(model, theory)
         self.external = External.of(model, theory)
-        self.events = [Event("note", 0.0, note) for note in self.external.notes]
+        elsewhere = extensible_elsewhere(model) if theory == EXACT else ""
+        notes = [*self.external.notes, *([elsewhere] if elsewhere else [])]
+        self.events = [Event("note", 0.0, note) for note in notes]
         self.looked_for_bodies = self.soft = False
         self.slender = np.zeros(model.rods.count, dtype=bool)
         self.begun = start.plastic_strain
@@ -295,6 +304,7 @@ class _Settling:
             if elastic is not None:  # and so at every load between
                 self.point, self.load, self.factor, self.share = elastic, target, factor, share
                 return
+        self._check_extensible()
         change = target - self.load
         exchanged = change + (share - self.share) * self._carried()
         if largest(exchanged) <= UNCHANGED * largest(target):
@@ -314,6 +324,16 @@ class _Settling:
             raise
         finally:
             self.slack = loading.slack
+
+    def _check_extensible(self) -> None:
+        """Raise NoEquilibrium where rods are inextensible, which only the answer at once knows."""
+        if len(rows := self.structure.inextensible):
+            message = tr(
+                "Inextensible rods, such as {rods}, are computed only while all others are elastic and all cables taut."
+                " Switch yielding off, or let these rods have their EA.",
+                rods=rod_names(self.model, rows[:1]),
+            )
+            raise NoEquilibrium("limit reached", message)
 
     def _stability(self, factor: float) -> str:
         """The kind of equilibrium; a motion against so little stiffness that few digits are certain is reported."""

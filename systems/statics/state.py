@@ -70,9 +70,9 @@ class StaticState:
         rods, count = slice(model.rods.count), model.particles.count  # what follows: contacts, obstacles
         pressing = rods.stop + np.flatnonzero(response.axial_force[rods.stop :] < 0.0)
         reaction = structure.reactions(response, load)[:count]
-        elastic = 500.0 * float(
-            (response.axial_force**2 * structure.rest_length / structure.stiffness)[rods].sum()
-        )
+        stored = response.axial_force**2 * structure.rest_length / structure.stiffness
+        stored[structure.inextensible] = 0.0
+        elastic = 500.0 * float(stored[rods].sum())
         if structure.bending is not None and response.bent is not None:
             elastic += 1000.0 * float(structure.bending.energy(response.bent.slopes).sum())
         elastic += 500.0 * float((response.spring_force * displacement).sum())

@@ -21,6 +21,8 @@ from pinjoint.systems.statics.state import STABLE, Start, StaticState
 _REFINEMENTS = 4  # of a linear solution
 _REFINEMENTS_OF_BENDING = 40  # at most; few unless hundreds of rods divide a long member
 PUSHED = 1e-9  # of a load: what of it moves a mechanism; less is round-off
+SELF_STRESSED = 1e-10  # share of the stiffness of inextensible rods by which others let them grow: none does
+IN_PART = 1e-3  # of the largest force of such a state: smaller ones are none
 FULL = 600  # unknowns up to which all modes, eigenvalues and singular values are computed
 MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 
@@ -61,14 +63,29 @@ class FirstOrder:
         supports: displacements of constrained directions, else 0. share: of the distributed forces. rods: the structure, or
         one of another lack of fit.
         """
-        moved = supports + self.deflection(load - rods.internal(elastic(rods, supports, plastic_strain, share)))
-        return moved, elastic(rods, moved, plastic_strain, share)
+        held, firm = elastic(rods, supports, plastic_strain, share), self.structure.inextensible
+        longer = rods.rest_length * plastic_strain - held.elongation
+        by, forces = self._answer(load - rods.internal(held), longer[firm])
+        found = elastic(rods, supports + by, plastic_strain, share)
+        if len(firm):
+            axial, strain, elongation = (
+                part.copy() for part in (found.axial_force, found.strain, found.elongation)
+            )
+            axial[firm] += forces
+            strain[firm], elongation[firm] = plastic_strain[firm], (rods.rest_length * plastic_strain)[firm]
+            found = replace(found, axial_force=axial, strain=strain, elongation=elongation)
+        return supports + by, found
 
-    def deflection(self, load: Array) -> Array:
+    def deflection(self, load: Array, longer: Array | None = None) -> Array:
         """Displacements (n, …) of the free directions under a load (n, …), without those that nothing resists.
 
-        Raises NoEquilibrium for cables, and where the load moves a mechanism.
+        longer: by how much inextensible rods grow all the same; None: not. Raises NoEquilibrium for cables, where the load
+        moves a mechanism, and where inextensible rods are self-stressed.
         """
+        return self._answer(load, np.zeros(len(self.structure.inextensible)) if longer is None else longer)[0]
+
+    def _answer(self, load: Array, longer: Array) -> tuple[Array, Array]:
+        """The same, and what the axial forces of inextensible rods are beside those by their EA: Lagrange's multipliers."""
         structure, model = self.structure, self.model
         if structure.sense.any():
             rows = np.flatnonzero(structure.sense)
@@ -92,17 +109,45 @@ class FirstOrder:
                 share=SOFT,
             )
             raise NoEquilibrium("mechanism", message, normalised(structure.spread(solution)))
-        return structure.spread(solution - modes @ (modes.T @ (weight * solution)))
+        forces = np.zeros(len(longer))
+        for _ in range(_REFINEMENTS if len(longer) else 0):
+            along, moved, soft = self._constraints
+            step = np.linalg.solve(soft, along @ solution - longer)
+            solution, forces = solution - moved @ step, forces + step
+            solution = solution + self._factor.solve(right - self._held(solution) - forces @ along)
+        return structure.spread(solution - modes @ (modes.T @ (weight * solution))), forces
+
+    @cached_property
+    def _constraints(self) -> tuple[Array, Array, Array]:
+        """The elongations of inextensible rods by the unknowns, A (k, N), K⁻¹Aᵀ and A K⁻¹Aᵀ. Raises NoEquilibrium."""
+        structure, model = self.structure, self.model
+        rows, modes, weight = structure.inextensible, self.mechanisms, self._measure.weight
+        along = structure.elongations(structure.unmoved, rows)
+        moved = self._factor.solve(np.ascontiguousarray(along.T))
+        moved = moved - modes @ (modes.T @ (weight[:, None] * moved))
+        soft, root = along @ moved, np.sqrt((self._measure.stiffness / self._measure.rest_length)[rows])
+        values, vectors = np.linalg.eigh(root[:, None] * soft * root)
+        if values[0] <= SELF_STRESSED:
+            stressed = rows[np.abs(vectors[:, 0]) > IN_PART * np.abs(vectors[:, 0]).max()]
+            message = tr(
+                "The axial forces of {rods}, which are inextensible, cannot be told: they hold each other in a state of"
+                " self-stress, alone or with supports. Let one of them have its EA.",
+                rods=rod_names(model, stressed),
+            )
+            raise NoEquilibrium("limit reached", message)
+        return along, moved, soft
+
+    def _held(self, solution: Array) -> Array:
+        """What holds the unknowns at small displacements; by relative motions, which lose fewer digits than the matrix."""
+        if self.structure.bending is None:
+            return np.asarray(self._matrix @ solution)
+        return self.structure.gather(self.structure.resistance(self.structure.spread(solution)))
 
     def _refined(self, right: Array) -> Array:
         """The solution of K u = f to its last digits."""
         structure, solution = self.structure, self._factor.solve(right)
         for _ in range(_REFINEMENTS if structure.bending is None else _REFINEMENTS_OF_BENDING):
-            if structure.bending is None:
-                held = self._matrix @ solution
-            else:  # relative motions of the ends lose fewer digits than the matrix
-                held = structure.gather(structure.resistance(structure.spread(solution)))
-            step = self._factor.solve(right - held)
+            step = self._factor.solve(right - self._held(solution))
             solution = solution + step
             if structure.bending is not None and largest(step) <= ROUND_OFF * largest(solution):
                 break
@@ -275,7 +320,7 @@ def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Arra
     if quantity == "axial_force":
         pull = np.zeros_like(structure.difference)
         pull[row] = structure.stiffness[row] / structure.rest_length[row] * structure.unmoved.axis[row]
-        return theory.deflection(structure.scatter(pull))
+        return theory.deflection(structure.scatter(pull), (structure.inextensible == row).astype(np.float64))
     if quantity in ("shear", "bending_moment"):
         assert structure.bending is not None
         kinks = np.zeros(structure.ends.shape)
@@ -289,4 +334,5 @@ def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Arra
         return theory.deflection(unit)
     if spring := float(structure.springs[row, axis]):
         return -spring * theory.deflection(unit)
-    return theory.deflection(structure.resistance(unit)) - unit
+    longer = (structure.relative(unit) * structure.unmoved.axis).sum(axis=1)[structure.inextensible]
+    return theory.deflection(structure.resistance(unit), longer) - unit

@@ -15,6 +15,7 @@ from pinjoint.components.model import Model
 from pinjoint.lessons import progress
 from pinjoint.lessons.checking import check_lesson
 from pinjoint.lessons.course import Course, take_up_lesson
+from pinjoint.lessons.tasks import Lesson
 from pinjoint.scripts.lines import perform
 from pinjoint.scripts.script import TO_DO, Script, ScriptError, lessons
 from pinjoint.systems.render.marks import Text
@@ -615,6 +616,18 @@ def test_what_is_wrong_with_a_lesson_is_found(tmp_path: Path, line: str, said: s
     failures = [str(failure) for failure in check_lesson(Script(path))]
     assert len(failures) == 1
     assert said in failures[0]
+
+
+def test_what_is_lacking_is_said_in_the_unit_on_screen_from_nothing_on(
+    tmp_path: Path, session: Session
+) -> None:
+    path = tmp_path / "mine.jsonl"
+    task = '{"task": "x", "until": "particles.B.displacement.y > 0.01", "right": "", "solution": []}'
+    path.write_text(HEADER.replace("}", ', "model": "isostatic"}') + f"\n{task}\n", encoding="utf-8")
+    session.course = Course(session, Lesson(Script(path)))
+    session.course.begin(0)
+    session.course.check()
+    assert session.course.said == "Displacement y of particle B is 0 cm now; wanted: more than 1 cm."
 
 
 def test_own_lessons_stand_on_the_start_page(session: Session, data: Path) -> None:

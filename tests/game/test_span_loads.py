@@ -118,3 +118,16 @@ def test_sums_of_loads_and_reactions_are_opposite() -> None:
         sums = Results.of(session.model).sums
         for column in sums.columns:
             assert column.values[0] == pytest.approx(-column.values[1], abs=1e-6), (theory, column.key)
+
+
+def test_values_are_typed_with_the_tool_in_hand_and_moved_by_a_slider() -> None:
+    session = opened(simple({"start": 1.0, "force": [0.0, -10.0]}))
+    session.select(session.rods["AB"])
+    session.press("ctrl+l")
+    [aim] = session.model.sliders[0].aims
+    assert (aim.element, aim.field, aim.axis) == (session.span_loads[0], "force", "y")
+    session.settings.displacement_scale = 1.0
+    session.press("ctrl+f", session.point(3.0, 0.0))
+    session.type("-1500 N")
+    session.press("return")
+    assert (session.span_loads[1].start, session.span_loads[1].force) == (3.0, (0.0, -1.5))

@@ -29,6 +29,7 @@ class Member:
     springs: dict[int, float]
     length: float
     load: tuple[float, float]  # along and across, per present length
+    longer: float | None = None  # of inextensible ones, which have no axial stiffness
 
 
 def member(rod: Document, places: list[int], span: np.ndarray) -> Member:
@@ -36,7 +37,8 @@ def member(rod: Document, places: list[int], span: np.ndarray) -> Member:
     length = float(np.hypot(*span))
     cosine, sine = span / length
     rest = rod.get("rest_length", length)
-    axial, bend = rod["stiffness"] / rest, rod.get("bending_stiffness", 0.0) / rest
+    firm = rod.get("inextensible", False)
+    axial, bend = 0.0 if firm else rod["stiffness"] / rest, rod.get("bending_stiffness", 0.0) / rest
     shear, lever = 12.0 * bend / length**2, 6.0 * bend / length
     stiffness = np.array(
         [
@@ -76,7 +78,7 @@ def member(rod: Document, places: list[int], span: np.ndarray) -> Member:
     if bars:  # simple beams
         fixed[[1, 4]] += np.array([1.0, -1.0]) * (fixed[2] + fixed[5]) / -length
         fixed[[2, 5]] = 0.0
-    return Member(places, turned, stiffness, fixed, springs, length, (along, across))
+    return Member(places, turned, stiffness, fixed, springs, length, (along, across), longer if firm else None)
 
 
 def with_own_turns(of: Member) -> tuple[np.ndarray, np.ndarray]:
@@ -168,11 +170,25 @@ def solve(document: Document) -> Found:
     placed = [[*p.get("displacement", (0.0, 0.0)), p.get("rotation", 0.0)] for p in particles]
     turn = axes_of(particles)
     moved = np.where(held & ~still, turn @ np.array(placed).ravel(), 0.0)
-    moved[free] = np.linalg.solve(matrix[np.ix_(free, free)], (load - matrix @ moved)[free])
+    firm = [of for of in members if of.longer is not None]
+    along = np.zeros((len(firm), len(load)))
+    for row, of in zip(along, firm, strict=True):
+        row[of.places] = of.turned[3] - of.turned[0]
+    along = along @ turn.T
+    bordered = np.block(
+        [[matrix[np.ix_(free, free)], along[:, free].T], [along[:, free], np.eye(len(firm)) * 0.0]]
+    )
+    longer = np.array([of.longer for of in firm], dtype=float)
+    right = np.concatenate([(load - matrix @ moved)[free], longer - along @ moved])
+    solved = np.linalg.solve(bordered, right)
+    moved[free], forces = np.split(solved, [int(free.sum())])
+    load = load - forces @ along
     reaction = np.where(held, matrix @ moved - load, 0.0) - springs_of(particles) * moved
     reaction, moved = (turn.T @ reaction).reshape(-1, 3), turn.T @ moved
     names = [particle["name"] for particle in particles]
     of_rods = {rod["name"]: end_forces(of, moved) for rod, of in zip(rods, members, strict=True)}
+    for of, force in zip(firm, forces, strict=True):
+        of_rods[rods[members.index(of)]["name"]][0][[0, 3]] += [-force, force]
     return Found(
         displacement={name: moved.reshape(-1, 3)[i, :2] for i, name in enumerate(names)},
         rotation={name: float(moved[3 * i + 2]) for i, name in enumerate(names)},

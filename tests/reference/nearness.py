@@ -62,7 +62,8 @@ def _parts(mark: object, theme: Theme) -> Iterator[Part]:
                 yield Part(owner, kind, corners, mark.colour)
         case Stamps():
             for owner, at in zip(owners, mark.at, strict=True):
-                along = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])[mark.turns % 4]
+                angle = 0.5 * np.pi * mark.turns
+                along = np.round([np.cos(angle), np.sin(angle)], 15)
                 yield Part(owner, "support", np.array([at, at + mark.size * along]), mark.ink)
         case Discs() if mark.ink[3] == 255:
             for owner, at, radius in zip(owners, mark.at, mark.radius.tolist(), strict=True):

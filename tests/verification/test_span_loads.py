@@ -1,5 +1,6 @@
 """Loads between the ends of rods, against members divided at them, formulas of textbooks, fine meshes, and energy."""
 
+import math
 from itertools import pairwise
 from typing import Any
 
@@ -268,3 +269,22 @@ def test_the_error_of_exact_geometry_falls_with_the_fourth_power_of_division() -
     errors = [float(np.hypot(*(tip - tips[-1]))) for tip in tips[:-1]]
     for coarse, fine in pairwise(errors):
         assert fine < coarse / 10.0
+
+
+def test_trusses_bear_forces_and_couples_between_their_joints() -> None:
+    """Bars are simple beams: joints feel forces by the lever rule, and of a couple M forces ±M/L across."""
+    document = simple({"start": 1.0, "force": [0.0, -4.0]}, bending_stiffness=0.0)
+    document["particles"].append({"name": "C", "position": [2.0, 2.0]})
+    document["rods"] += [{"name": name, "between": list(name)} for name in ("AC", "BC")]
+    document["span_loads"].append({"rod": "AC", "start": 0.7, "moment": 8.0})
+    state = linear(parse(document))
+    assert state.reaction[:2] == pytest.approx(np.array([[0.0, 3.0 + 2.0], [0.0, 1.0 - 2.0]]), abs=1e-9)
+    across = 8.0 / math.sqrt(8.0)
+    assert state.diagrams["shear"][1] == pytest.approx([across, across])
+    assert state.diagrams["largest_moment"][1] == pytest.approx([across * 0.7 - 8.0, 0.7])
+    for rod in document["rods"]:
+        rod["damping"] = 200.0
+    session = Session.open(document | {"settings": {"collisions": False}})
+    exact = session.statics(theory="exact").final
+    session.run(until="rest")
+    assert session.model.particles.reaction == pytest.approx(exact.reaction, abs=1e-6)

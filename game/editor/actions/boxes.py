@@ -14,6 +14,8 @@ from pinjoint.editor.sliders import add_slider
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.forms.typing import MOST_CHARACTERS
 from pinjoint.systems.input.actions import ACTIONS, FORMS, LOAD, PROPERTIES, SAVE, Perform, actions_of
+from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.menu import pointed_at
 
 action = actions_of("Boxes", FORMS)
 FILES = (SAVE, LOAD)
@@ -81,6 +83,16 @@ def _slider_of_box(context: Context, pixel: Vector) -> None:
         raise Refusal("Click the box with the number first; then Ctrl+L makes a slider for it.")
     _, field, axis = f"{box.target}.".split(".")[:3]
     add_slider(context, box.elements, field, axis)
+
+
+@action("choose word", where=(PROPERTIES,), in_menu=True)
+def _choose_word(context: Context, pixel: Vector) -> None:
+    """The word that was clicked in the list of a box, or that keys have come to."""
+    view = context.view
+    hit, theme = view.pressed, load_theme(view.theme)
+    number = pointed_at(view, theme, view.pixel) if hit is None else int(hit.item)
+    view.menu = None
+    _form_scene(context).choose_word(context, number)
 
 
 action("scroll up", "wheel up", "scroll up")(_on_form(lambda s, context: s.scroll(context, -1)))

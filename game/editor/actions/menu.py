@@ -154,6 +154,20 @@ def _toggle_cable(context: Context, pixel: Vector) -> None:
     tell(context, tr("tension only, as a cable") if cable else tr("tension and compression"), *rods)
 
 
+@offer(
+    "toggle inextensible",
+    "",
+    "inextensible in first-order theory",
+    pressed=lambda context: {rod.inextensible for rod in context.model.tagged(Selected, Rod)} == {True},
+)
+def _toggle_inextensible(context: Context, pixel: Vector) -> None:
+    """Let the selected rods keep their lengths in first-order theory or, if all do so, not."""
+    rods = _selected(context)
+    firm = not all(rod.inextensible for rod in rods)
+    context.model.assign(rods, "inextensible", firm)
+    tell(context, tr("inextensible in first-order theory") if firm else tr("extensible, by its EA"), *rods)
+
+
 def _divide(parts: int, context: Context, pixel: Vector) -> None:
     """Divide the selected rods, and select their parts."""
     rods = _selected(context)

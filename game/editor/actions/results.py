@@ -203,6 +203,13 @@ def _usual(model: Model, elements: Sequence[Handle]) -> tuple[Sequence[Handle], 
     """Elements, and their Field and axis that people move most."""
     first = elements[0]
     if isinstance(first, Rod) and not any(first.distributed_force):
+        for load in (load for load in model.span_loads if load.rod == first.row):
+            for field in ("force", "end_intensity", "start_intensity"):
+                x, y = getattr(load, field)
+                if x or y:
+                    return [load], field, "x" if abs(x) > abs(y) else "y"
+            if load.moment:
+                return [load], "moment", ""
         return elements, "bending_stiffness" if first.bending_stiffness else "stiffness", ""
     if isinstance(first, Particle) and not any(first.force):
         loads = [load for load in model.loads if load.on == first.row]

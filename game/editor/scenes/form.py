@@ -9,6 +9,7 @@ from pinjoint.components.camera import Camera, Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.form import NAME, NUMBER, WORD, Box, Form, Tile
 from pinjoint.components.language import decimals, english, joined, marked, tr
+from pinjoint.components.toolbar import Menu, Tool
 from pinjoint.components.wording import missing
 from pinjoint.editor.context import Context, Scene
 from pinjoint.systems.forms.typing import YES_NO, Typing
@@ -119,6 +120,7 @@ class FormScene(Scene):
     # --- input -------------------------------------------------------------------------------------
 
     def type(self, context: Context, text: str) -> None:
+        context.view.menu = None  # the list of a box
         refused = self.typing.write(text)
         self.form.message = ""
         self._reveal_selected(context)
@@ -159,15 +161,24 @@ class FormScene(Scene):
                 again = box is self.form.selected
                 if not again:
                     self.typing.select(box)
-                if box.accepts in (WORD, NAME) and (again or box.words == YES_NO):
+                if box.accepts in (WORD, NAME) and box.words == YES_NO:
                     self.typing.turn_word(box)
                     self.changed(context)
+                elif box.accepts in (WORD, NAME):
+                    words = (Tool("choose word", box.said_word(w), pressed=w == box.text) for w in box.words)
+                    context.view.menu = Menu(box.said_title, (tuple(words),), pixel, pointed=pixel)
                 elif again and place is not None:
                     self.typing.place_caret(caret_at(place, box, pixel[0], context.view.pixel_ratio))
             case Tile() as tile:
                 self.choose(context, tile)
             case _:
                 self.click_beside(context, pixel)
+
+    def choose_word(self, context: Context, number: int) -> None:
+        """A word of the list of the selected box was chosen."""
+        if (box := self.form.selected) is not None:
+            self.typing.put(box, box.words[number])
+            self.accept(context)
 
     def click_beside(self, context: Context, pixel: Vector) -> None:
         """A click that hit neither a box nor a tile."""

@@ -102,6 +102,21 @@ def draw_hinges(sheet: Sheet) -> None:
         write_spring(sheet, at[k], _SPIRAL * u, stiffness, "kN·m/rad", key, ("rods", row))
 
 
+def draw_inextensible(sheet: Sheet) -> None:
+    """Two short lines across the middles of rods that keep their lengths."""
+    firm = sheet.model.rods.inextensible[sheet.rods]
+    if not firm.any():
+        return
+    u, start, end = sheet.unit, sheet.start[firm], sheet.end[firm]
+    along = (end - start) / np.maximum(np.hypot(*(end - start).T), 1e-300)[:, None]
+    across, middle = along[:, ::-1] * [-5.0, 5.0] * u, 0.5 * (start + end)
+    for shift in (-2.0 * u * along, 2.0 * u * along):
+        ends = middle + shift - across, middle + shift + across
+        sheet.marks.append(Strokes(*ends, 1.5 * u, sheet.theme.ink, ("rods", sheet.rods[firm])))
+    sheet.occupancy.block_squares(middle, np.full(len(middle), 5.0 * u))
+    sheet.explain("inextensible", middle, middle)
+
+
 def gaps(lengths: Values, unit: float) -> Values:
     """What is left free between joints and rods of these lengths where they are drawn apart, in pixels."""
     found: Values = np.minimum(_GAP_SHARE * lengths, _WIDEST_GAP * unit)

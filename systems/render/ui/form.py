@@ -23,6 +23,7 @@ from pinjoint.systems.render.ui.buttons import button, closing
 from pinjoint.systems.render.ui.form_box import bare_box, is_short, titled_box
 from pinjoint.systems.render.ui.help import put_help
 from pinjoint.systems.render.ui.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Scroll, Text
+from pinjoint.systems.render.ui.menu import put_menu
 from pinjoint.systems.render.ui.thumbnails import thumbnail
 
 PROPERTIES = marked("Properties")  # the heading of an element's own boxes, where its results stand above them
@@ -58,6 +59,7 @@ def compose_form(form: Form, view: View, theme: Theme) -> Picture:
     sides = [v.left] * (v.left > window.left) + [v.left + v.width - thin] * (v.right < window.right)
     paper.marks += [Panel(x, v.top, thin, v.height, 0.0, theme.line) for x in sides]
     FormLayout(form, v, paper, theme, view.status.hint)
+    put_menu(paper, view, theme)
     put_help(paper, view, v, theme)
     return Picture(v, theme.panel, paper.marks, hits=paper.hits)
 

@@ -25,7 +25,7 @@ from pinjoint.systems.render.ui.layout import (
     rule,
 )
 
-_SIZES = (12.5, 21.0), (11.5, 19.0), (10.0, 15.5)  # points: type, and from entry to entry
+_SIZES = (12.5, 21.0), (11.5, 19.0), (10.0, 14.5)  # points: type, and from entry to entry
 _EDGE = 4.0  # points above, below, and to the edges of the window
 
 

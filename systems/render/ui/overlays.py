@@ -257,6 +257,7 @@ MEANINGS = {
     "velocity": marked("velocity"),
     "hinge": marked("hinge"),
     "spring": marked("spring"),
+    "inextensible": marked("inextensible"),
     "ghost": marked("undeformed"),
     "deflected": marked("deflected"),
     **NAMES,
@@ -352,12 +353,16 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
     x, y, width = place.left, place.middle[1], place.width
     if name in _SCALES:
         return scale_bar(theme, x, y, width, u)
-    in_ink = ("slack", "hinge", "spring", "moment", "shear", "velocity", "inertia")
+    in_ink = ("slack", "hinge", "spring", "inextensible", "moment", "shear", "velocity", "inertia")
     drawn_in = {"first": "yielding", "deflected": "sketch"} | dict.fromkeys(in_ink, "ink")
     colour = getattr(theme, drawn_in.get(name, name))
     ends = np.array([[x, y]]), np.array([[x + width, y]])
     if name == "hinge":
         return [Stamps("ring", ends[0] + [width / 2, 0.0], 4.0 * u, u, theme.ink, theme.hollow)]
+    if name == "inextensible":
+        left, right = (x + width / 2 + shift * u for shift in (-2.0, 2.0))
+        above, below = (np.array([[left, y + dy * u], [right, y + dy * u]]) for dy in (-5.0, 5.0))
+        return [Strokes(above, below, 1.5 * u, colour)]
     if name == "spring":
         return [Stamps("spiral", ends[0] + [width / 2, 0.0], 6.0 * u, u, theme.ink, theme.hollow)]
     if name in ("load", "reaction", "inertia", "velocity"):

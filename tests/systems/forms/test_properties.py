@@ -14,6 +14,7 @@ from pinjoint.components.tags import Selected
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.systems.render.ui.form import FormLayout
+from tests.golden.scenes import composed
 from tests.reference.models import model, particle, rod, triangle
 
 SIZES = [(320, 240), (640, 480), (3840, 2160)]
@@ -721,3 +722,58 @@ def test_boxes_stand_where_they_are_drawn_before_any_picture() -> None:
     session.frame(0.0)
     assert list(session.stages)
     assert [(place.left, place.top) for place in scene.layout(session).places] == before
+
+
+# --- lists ---------------------------------------------------------------------------------------------
+
+
+def listed(session: Session, title: str) -> list[str]:
+    """Click a box, and what the list that opens has."""
+    session.resize(1280, 800)
+    place = layout_of(session).place_of(box_of(session, title))
+    assert place is not None
+    session.press("click", place.middle)
+    assert session.view.menu is not None
+    return [entry.title for entry in session.view.menu.entries]
+
+
+def entry_of(session: Session, word: str) -> tuple[float, float]:
+    """The middle of an entry of the open list, as the picture has it."""
+    session.update_view()
+    hits = [hit for picture in composed(session) for hit in picture.hits if hit.action == "choose word"]
+    assert session.view.menu is not None
+    number = [entry.title for entry in session.view.menu.entries].index(word)
+    return next(hit.middle for hit in hits if hit.item == number)
+
+
+def test_a_list_opens_by_a_click_and_a_click_chooses() -> None:
+    bent = cantilever()
+    open_of(bent, "AB")
+    words = listed(bent, "material")
+    assert words[0] == "none"
+    assert "S355" in words
+    bent.press("click", entry_of(bent, "S355"))
+    assert bent.view.menu is None
+    assert bent.rods["AB"].material == "S355"
+    assert bent.scene == "properties"
+    bent.press("escape")
+    bent.undo()
+    assert bent.rods["AB"].material is None
+
+
+def test_a_list_is_gone_through_by_keys_and_closes_where_something_is_typed(session: Session) -> None:
+    open_of(session)
+    words = listed(session, "integrator")
+    session.press("down")
+    session.press("down")
+    session.press("return")
+    assert session.settings.integrator == words[1]
+    listed(session, "integrator")
+    session.press("escape")
+    assert session.view.menu is None
+    assert session.settings.integrator == words[1]
+    listed(session, "integrator")
+    session.type("r")
+    assert session.view.menu is None
+    session.press("return")
+    assert session.settings.integrator == "rk4"
