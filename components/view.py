@@ -148,12 +148,14 @@ class Plot:
     """Curves over common axes, whose titles name quantity and unit.
 
     curves: (name, x (n,), y (n,)) of each; what is not finite parts a curve. revision: grows when they change.
+    dots: places (k, 2) that are marked on them.
     """
 
     x_title: str
     y_title: str
     curves: tuple[tuple[str, NDArray[np.float64], NDArray[np.float64]], ...] = field(compare=False, repr=False)
     revision: int = 0
+    dots: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

@@ -149,10 +149,17 @@ def frame(
     return as_colours([compose(session.model, view, load_theme(theme), placed)], size)
 
 
-def plot_png(plot: Plot, path: Path, theme: str = "light") -> None:
-    """Draw a plot to a PNG file, without a display. Raises OSError if it cannot be written."""
+def plot_picture(plot: Plot, path: Path, theme: str = "light") -> None:
+    """Draw a plot to a PNG, SVG or PDF file, without a display. Raises OSError if it cannot be written."""
     colours, unit, size = load_theme(theme), 1.5, (900, 560)
     box = Rectangle(16.0 * unit, 8.0 * unit, size[0] - 32.0 * unit, size[1] - 16.0 * unit)
     marks = draw_plot(plot, box, colours, unit, None)
     picture = Picture(Viewport(0, 0, *size), colours.background, marks)
-    models.replace(path, _as_image([picture], size, ".png", clear=False))
+    suffix = path.suffix.lower()
+    if suffix == ".svg":
+        made = as_svg([(picture, lambda owner: "")], size, plot.x_title)
+    elif suffix == ".pdf":
+        made = as_pdf([picture], size, plot.x_title)
+    else:
+        made = _as_image([picture], size, ".png", clear=False)
+    models.replace(path, made)

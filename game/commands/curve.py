@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from pinjoint.commands.arguments import Parser, UsageError, count, finite, option
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, model_of
-from pinjoint.commands.output import Row, add_output, write_result
-from pinjoint.components.field import ENDS
+from pinjoint.commands.output import Row, add_output, write_result, writing
 from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
+from pinjoint.curves import UNITS, called, chosen, columns, plot
 from pinjoint.streams import tell
 from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.statics.explain import describe_motion
 from pinjoint.systems.statics.path import Curve, Goal
 from pinjoint.systems.statics.theory import mechanisms
 
-_UNITS = {"displacement": "m", "rotation": "rad", "axial_force": "kN", "bending_moment": "kN·m"}
+_PICTURES = ".png", ".svg", ".pdf"
 
 
 def command(words: Sequence[str]) -> int:
@@ -46,6 +45,12 @@ def command(words: Sequence[str]) -> int:
         default=0,
     )
     option(parser, "--points N", "compute at most N equilibria; default 500", count, default=500)
+    option(
+        parser,
+        "--of B.y",
+        "only this displacement, rotation (B.rotation), axial force (AB) or moment (AB.start); may be given several times",
+        action="append",
+    )
     add_theory(parser)
     add_output(parser, default="csv")
     options = parser.parse_args(words)
@@ -54,13 +59,22 @@ def command(words: Sequence[str]) -> int:
         end = Goal.of(model, options.factor, options.until)
         wanted = {name: getattr(options, name) for name in ("points", "branch", "theory")}
         found = Curve.of(model, end, **wanted)
-    except ValueError as error:
+        is_picture = str(options.output).lower().endswith(_PICTURES)
+        drawn = plot(model, found, options.of or ()) if is_picture else None
+        chosen(model, found, options.of or ())
+    except (ValueError, LookupError) as error:
         raise UsageError(str(error)) from None
     laws = left_out_of_statics(model)
     message = "" if found.complete else _why_it_ends(model, found, options.points)
     message = joined([_what_is_missing(found, options.branch), message])
     said = {"complete": found.complete, "message": message, "left_out": laws}
-    write_result(options, said | _data(model, found), _rows)
+    if drawn is not None:
+        from pinjoint.pictures import plot_picture
+
+        with writing(options.output):
+            plot_picture(drawn, Path(options.output))
+    else:
+        write_result(options, said | _data(model, found, options.of), _rows)
     if laws:
         tell(tr("The curve leaves out the laws of mods: {laws}.", laws=", ".join(laws)))
     for event in found.events:
@@ -116,29 +130,21 @@ def _why_nothing_follows(model: Model) -> str:
     )
 
 
-def _data(model: Model, curve: Curve) -> dict[str, Any]:
+def _data(model: Model, curve: Curve, names: Sequence[str] | None) -> dict[str, Any]:
     """A curve as plain data: columns, each list with one entry for every equilibrium, and the same as points; and events.
 
     displacement (m): by free direction, such as "B.y"; axial_force (kN): by rod. Where members bend: rotation (rad), by
     particle that turns; bending_moment (kN·m), by rigid end, such as "AB.start".
     """
-    names = model.particles.names
-    free = np.argwhere(~model.particles.fixed).tolist()
-    bent = {}
-    if bends(model):
-        turns = np.flatnonzero(model.particles.turning > 0.0).tolist()
-        rigid = np.argwhere(model.rods.turning_shares > 0.0).tolist()
-        rods = model.rods.names
-        bent["rotation"] = {names[row]: curve.rotation[:, row] for row in turns}
-        bent["bending_moment"] = {
-            f"{rods[row]}.{ENDS[end]}": curve.bending_moment[:, row, end] for row, end in rigid
-        }
     return {
         "load_factor": curve.load_factor,
         "stable": curve.stable,
-        "displacement": {f"{names[row]}.{'xy'[axis]}": curve.displacement[:, row, axis] for row, axis in free},
-        "axial_force": dict(zip(model.rods.names, curve.axial_force.T, strict=True)),
-        **bent,
+        **{
+            quantity: {
+                name: values for name, values in of.items() if names is None or called(quantity, name) in names
+            }
+            for quantity, of in columns(model, curve).items()
+        },
         "points": [_point(model, curve, number) for number in range(len(curve.load_factor))],
         "events": [event.record(model) for event in curve.events],
     }
@@ -167,7 +173,7 @@ def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
     """The data of a curve as rows, one for every equilibrium, headings first."""
     columns = {
         f"{name} ({unit})": values
-        for quantity, unit in _UNITS.items()
+        for quantity, unit in UNITS.items()
         for name, values in found.get(quantity, {}).items()
     }
     yield marked("load factor"), marked("stable"), *columns

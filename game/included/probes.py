@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pinjoint.components import Model, Particle, Plot, Readout, Rod, Vector, written
-from pinjoint.components.field import ENDS
+from pinjoint.components.field import ENDS, Role
 from pinjoint.components.language import english, joined, listed, marked, tr
+from pinjoint.components.theory import EXACT
 from pinjoint.documents.models import replace
 from pinjoint.mods import App
 from pinjoint.paths import FACTOR, TIME, Quantity, quantity
@@ -26,6 +27,7 @@ if TYPE_CHECKING:  # a command needs no editor
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
 PAST = 300  # samples of the run before a plot was opened
+MOST_RODS = 300  # of a structure of which a curve is plotted at once
 PARTS = 24  # of each load step of statics, at which a plot has points
 ENERGIES = {  # by path, as legends name them
     "energy.kinetic": marked("kinetic"),
@@ -110,6 +112,7 @@ class Probes:
     """The probes of one session, newest last; span: the share of the time that plots show."""
 
     all: list[Probe] = field(default_factory=list)
+    curve: tuple[int, Plot] | None = None  # the newest edit that it knows, and load against displacement
     span: float = 1.0
     model: weakref.ref[Model] | None = None
 
@@ -162,7 +165,7 @@ def probes_of(session: Context) -> Probes:
     """The probes of a session, all of them of the model that is open."""
     probes = _probes.setdefault(session, Probes())
     if probes.model is None or probes.model() is not session.model:
-        probes.all = []
+        probes.all, probes.curve = [], None
     return probes
 
 
@@ -221,6 +224,26 @@ def plot_next(session: Context, pixel: Vector) -> None:
     )
 
 
+def plot_curve(session: Context, pixel: Vector) -> None:
+    """Plot load against displacement, through limit points, of the selected particle, else of what moves most; or close."""
+    from pinjoint.curves import plot  # they import scipy
+    from pinjoint.systems.statics.path import Curve, Goal
+
+    probes, model = probes_of(session), session.model
+    names = [f"{one.name}.{axis}" for one in session.selected for axis in "xy" if isinstance(one, Particle)]
+    if model.rods.count > MOST_RODS:
+        raise Refusal(
+            "This takes long for more than {count} rods; use the command: pinjoint curve", count=MOST_RODS
+        )
+    held = {f"{one.name}.{axis}" for one in model.particles for at, axis in enumerate("xy") if one.fixed[at]}
+    goal = Goal.of(model, model.settings.load_steps[-1], None)
+    curve = Curve.of(model, goal, theory=EXACT if model.solution is None else model.settings.theory)
+    drawn = plot(model, curve, [name for name in names if name not in held])
+    shown = probes.curve is not None and probes.curve[1].x_title == drawn.x_title
+    probes.model = weakref.ref(model)
+    probes.curve = None if shown else (model.newest(Role.DOCUMENT), drawn)
+
+
 def zoom(factor: float, session: Context) -> None:
     """Show a shorter or longer part of the time."""
     probes = probes_of(session)
@@ -256,25 +279,30 @@ def write_csv(probe: Probe, path: Path) -> None:
 
 def write_png(probe: Probe, path: Path, theme: str = "light") -> None:
     """Write the whole plot as a picture."""
-    from pinjoint.pictures import plot_png  # pygame is there when it is needed
+    from pinjoint.pictures import plot_picture  # pygame is there when it is needed
 
-    plot_png(probe.plot(1.0), path, theme)
+    plot_picture(probe.plot(1.0), path, theme)
 
 
 def panels(session: Context) -> Sequence[Readout]:
     """Each probe as a panel with its plot."""
     probes = probes_of(session)
-    return [
+    shown = [
         Readout(_heading(probe), (), probe.plot(1.0 if probe.of_statics else probes.span), "probes.close")
         for probe in probes.of(session)
     ]
+    if probes.curve is not None and probes.curve[0] == session.model.newest(Role.DOCUMENT):
+        shown.append(Readout(tr("Load–displacement curve"), (), probes.curve[1], "probes.close"))
+    return shown
 
 
 def close(session: Context, pixel: Vector) -> None:
     """Take away the plot whose panel was pressed."""
     probes, pressed = probes_of(session), session.view.pressed
     closed = _names(pressed.item) if pressed is not None else ()
-    shown = zip(probes.of(session), panels(session), strict=True)
+    if probes.curve is not None and closed[1:2] == (probes.curve[1].x_title,):
+        probes.curve = None
+    shown = zip(probes.of(session), panels(session), strict=False)
     gone = [probe for probe, readout in shown if _names(readout) == closed]
     probes.all = [probe for probe in probes.all if probe not in gone]
 
@@ -339,6 +367,9 @@ def plugin(app: App) -> None:
     app.command("plot", run, marked("write or draw what a run does, against time or another quantity"))
     live = ("simulation", "pause", "statics")
     app.action("probes.plot", key="o", scenes=live, title=marked("plot the selection"), icon=ICON)(plot_next)
+    app.action("probes.curve", key="ctrl+u", scenes=live[1:], title=marked("plot load against displacement"))(
+        plot_curve
+    )
     app.action("probes.save", key="ctrl+e", scenes=live, title=marked("save plots as CSV and PNG"))(save)
     app.action("probes.close", while_drawing=True)(close)
     for name, key, factor, title in (

@@ -56,6 +56,9 @@ class _Drawing:
         marks = [*self._axes(), *self._titles()]
         for (_, x, y), colour in self.coloured:
             marks += self._curve(self.pixels(x, y), colour)
+        if self.plot.dots is not None and len(self.plot.dots):
+            places, ink = self.pixels(*self.plot.dots.T), self.theme.curve_2
+            marks.append(Stamps("disc", places, 3.5 * self.unit, self.unit, ink, ink))
         return marks + (self._reading(pointer) if pointer is not None else [])
 
     def _axes(self) -> list[Mark]:
