@@ -100,7 +100,7 @@ class Axes:
 
     def points(self, shares: Array) -> Array:
         """Points at shares (k,) or (n, k), shape (n, k, 2)."""
-        along = np.broadcast_to(shares, (len(self.start), np.shape(shares)[-1]))[..., None]
+        along = shares[..., None]
         chord = self.start[:, None] * (1.0 - along) + self.end[:, None] * along
         found: Array = chord + self._away(self.bow, self.drift, shares)
         return found

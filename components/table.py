@@ -23,6 +23,7 @@ class Store(Protocol):
 
     tables: dict[str, Table[Any]]
     row_of_entity: NDArray[np.int64]
+    revision: int
     structure: int
     solution: Any
 
@@ -58,6 +59,7 @@ class Table(Generic[H]):
         "_columns",
         "_first_of",
         "_lowest_number",
+        "_read",
         "_shown",
         "_versions",
         "_world",
@@ -82,6 +84,7 @@ class Table(Generic[H]):
         self.entity: NDArray[np.int64] = np.empty(1 if kind.single else _SMALLEST_CAPACITY, dtype=np.int64)
         self.handles: list[H] = []
         self._columns: dict[str, Column] = {}
+        self._read: dict[str, tuple[int, Column]] = {}  # with the revision: a picture asks for some 200
         self._shown: dict[str, tuple[Column, Column]] = {}  # storage of columns that were read, and it to read
         self._first_of: dict[str, str] = {}  # by column, the first of those that lie in one array with it
         self._versions: dict[str, int] = {}  # by the first of such columns: they change together
@@ -186,15 +189,21 @@ class Table(Generic[H]):
         Where the world shows a solution in place of the state, that of the solution.
         """
         world = self._world()  # which may be gone
+        revision, found = self._read.get(name, (-1, None))
+        if found is not None and world is not None and revision == world.revision:
+            return found
+        found = None
         if world is not None and world.solution is not None and self.fields[name].role not in MADE:
-            found: Column | None = world.solution.columns.get(f"{self.name}.{name}")
-            if found is not None:
-                return found
-        storage = self.current(name)
-        shown = self._shown.get(name)
-        if shown is None or shown[0] is not storage or len(shown[1]) != self.count:
-            shown = self._shown[name] = storage, read_only(storage)[: self.count]
-        return shown[1]
+            found = world.solution.columns.get(f"{self.name}.{name}")
+        if found is None:
+            storage = self.current(name)
+            shown = self._shown.get(name)
+            if shown is None or shown[0] is not storage or len(shown[1]) != self.count:
+                shown = self._shown[name] = storage, read_only(storage)[: self.count]
+            found = shown[1]
+        if world is not None:
+            self._read[name] = world.revision, found
+        return found
 
     def current(self, name: str) -> Column:
         """The column's storage, over its whole capacity, derived columns up to date."""

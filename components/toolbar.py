@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.field import Vector
@@ -44,12 +45,18 @@ class Toolbar:
 
     def columns(self, window: Viewport, unit: float) -> tuple[int, float]:
         """The number of columns, and the points that a button is high; 0 where no number of them has room."""
-        room = window.height / unit - (len(self.groups) - 1) * GAP - 2 * EDGE
-        for columns in range(1, max(map(len, self.groups), default=0) + 1):
-            rows = sum(-(-len(group) // columns) for group in self.groups)
-            if window.width >= LEAST_WIDTH * unit and rows * LEAST_HEIGHT <= room:
-                return columns, min(BUTTON[1], room / rows)
-        return 0, 0.0
+        return _columns(tuple(map(len, self.groups)), window.width, window.height, unit)
+
+
+@lru_cache(maxsize=64)  # a picture asks thirty times where its canvas begins
+def _columns(groups: tuple[int, ...], width: int, height: int, unit: float) -> tuple[int, float]:
+    """Of groups of so many tools."""
+    room = height / unit - (len(groups) - 1) * GAP - 2 * EDGE
+    for columns in range(1, max(groups, default=0) + 1):
+        rows = sum(-(-group // columns) for group in groups)
+        if width >= LEAST_WIDTH * unit and rows * LEAST_HEIGHT <= room:
+            return columns, min(BUTTON[1], room / rows)
+    return 0, 0.0
 
 
 @dataclass(frozen=True)

@@ -332,6 +332,7 @@ class World:
         for target in derivation.targets:
             self._derivations[target] = derivation
         self._derived_at[derivation] = -1
+        self.next_revision()  # what was read before is out of date
         self._roots.clear()
 
     def refresh(self, name: str) -> None:

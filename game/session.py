@@ -140,13 +140,15 @@ class Session(Headless):
         if not action.in_menu:
             self.view.menu = None
         exaggerate(self)
+        gesture = self.gesture
         try:
             action.perform(self, pixel if pixel is not None else self.view.pixel)
         except Mistake as error:
             self.notice = str(error)
         self.scenes.apply(self)
         take_up_lesson(self)
-        offer_tools(self)
+        if not self.view.steady or self.gesture is not gesture:  # while a hand drags, frames do
+            offer_tools(self)
         self._make_room()
 
     def _leave_document(self) -> None:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from typing import Any
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
-from pinjoint.components.language import begun, marked, tr
+from pinjoint.components.language import begun, language, marked, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
 from pinjoint.components.tags import Selected
@@ -70,9 +72,15 @@ def tool(context: Context, name: str, title: str = "") -> Tool | None:
     action = ACTIONS[name]
     pressed = name == tool_in_hand(context) or bool(action.pressed(context))
     icon, pressed_title = action.pressed_as(context) if pressed else ("", "")
-    said = tr(title or pressed_title or binding.title)
     enabled = scene in binding.scenes and bool(action.enabled(context))
-    return Tool(name, said, binding.key, icon or name, pressed, enabled)
+    said = title or pressed_title or binding.title
+    return _tool(language(), name, said, binding.key, icon or name, pressed, enabled)
+
+
+@lru_cache(maxsize=1024)  # a frame has some fifty
+def _tool(spoken: str, name: str, title: str, *facts: Any) -> Tool:
+    """A button or an entry whose title is said in the present language."""
+    return Tool(name, tr(title), *facts)
 
 
 # --- menus -----------------------------------------------------------------------------------------------

@@ -93,6 +93,7 @@ class Actions(UserDict[str, Action]):
         """Forget what follows from the actions: by scene and key, and by name and scene."""
         self._by_key: dict[tuple[str, str], tuple[Action, Binding]] = {}
         self._offers: dict[tuple[str, str], Binding | None] = {}
+        self._known: set[str] = set()  # keys, without those that are held beside them
 
     def __setitem__(self, name: str, action: Action) -> None:
         super().__setitem__(name, action)
@@ -171,10 +172,11 @@ class Actions(UserDict[str, Action]):
             held.add(MODIFIERS[modifier])
             name = name.removeprefix(modifier)
         name = ALSO_CALLED.get(name, name)
-        keys = (binding.key for action in self.data.values() for binding in action.bindings if binding.key)
-        known = {key.removeprefix("ctrl+").removeprefix("shift+") for key in keys} | {*UNBOUND}
-        if len(name) != 1 and name not in known:
-            raise ValueError(missing(marked("keys"), text, sorted(key for key in known if len(key) > 1)))
+        if not self._known:
+            bound = (binding.key for _, binding in self.bound())
+            self._known = {key.removeprefix("ctrl+").removeprefix("shift+") for key in bound} | {*UNBOUND}
+        if len(name) != 1 and name not in self._known:
+            raise ValueError(missing(marked("keys"), text, sorted(key for key in self._known if len(key) > 1)))
         if len(name) == 1 and "ctrl+" not in held:
             held.clear()
         return "".join(sorted(held)) + name  # ctrl comes before shift

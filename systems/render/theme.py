@@ -99,6 +99,7 @@ def pale(colour: Colour, background: Colour) -> Colour:
     return red, green, blue, colour[3]
 
 
+@cache
 def faded(colour: Colour, opacity: float) -> Colour:
     """The colour at that opacity, 0 to 1."""
     return (*colour[:3], round(255 * opacity))

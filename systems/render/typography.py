@@ -25,12 +25,14 @@ def _metrics() -> dict[str, Any]:
 
 @lru_cache(maxsize=8192)
 def text_width(text: str, size: int, weight: str = "regular") -> int:
-    """Width in pixels of one line of text at a font size in pixels.
+    """Width in pixels of a text, of several lines that of the longest, at a font size in pixels.
 
     Every advance is rounded to whole pixels, as hinted fonts are drawn. A character that the font lacks
     counts 0.7 em.
     """
-    return sum(_character_width(character, size, weight) for character in text)
+    return max(
+        sum(_character_width(character, size, weight) for character in line) for line in text.split("\n")
+    )
 
 
 @cache
@@ -41,6 +43,7 @@ def _character_width(character: str, size: int, weight: str) -> int:
     return math.floor(advance * size / em + 0.5)
 
 
+@cache
 def font_size(points: float, unit: float) -> int:
     """A font size in whole pixels, of which each point takes `unit`."""
     return max(round(points * unit), 7)

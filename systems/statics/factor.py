@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
+from functools import cache, cached_property
 from importlib.machinery import PathFinder
 from importlib.util import module_from_spec
 from pathlib import Path
@@ -52,19 +52,22 @@ def lapack() -> Any:
 class Factor:
     """A factored symmetric matrix: L D Lᵀ, full or sparse.
 
-    negative: number of eigenvalues that are not positive, by Sylvester's law from the signs of D.
+    negative: number of eigenvalues that are not positive, by Sylvester's law from the signs of D; all if it does not exist.
     exists: False if a pivot vanishes, so that the matrix cannot be solved with.
     """
 
     def __init__(self, matrix: Matrix) -> None:
         self._solve: Callable[[Array], Array] = np.zeros_like
-        self.exists, self.negative = True, 0
+        self._count: Callable[[], int] = lambda: 0
+        self.exists, self._size = True, matrix.shape[0]
         if isinstance(matrix, np.ndarray):
             self._factor_full(matrix)
         else:
             self._factor_sparse(matrix)
-        if not self.exists:
-            self.negative = matrix.shape[0]
+
+    @cached_property
+    def negative(self) -> int:
+        return self._count() if self.exists else self._size
 
     def _factor_full(self, matrix: Array) -> None:
         """Bunch and Kaufman's pivoting; its 2 × 2 pivots have one eigenvalue of either sign."""
@@ -74,7 +77,7 @@ class Factor:
         factors, swaps, info = dsytrf(matrix, lower=1)
         self.exists = info == 0
         single = swaps >= 0
-        self.negative = int((np.diagonal(factors)[single] <= 0.0).sum()) + int((~single).sum()) // 2
+        self._count = lambda: int((np.diagonal(factors)[single] <= 0.0).sum()) + int((~single).sum()) // 2
         self._solve = lambda right: dsytrs(factors, swaps, right, lower=1)[0].reshape(right.shape)
 
     def _factor_sparse(self, matrix: csc_matrix) -> None:
@@ -86,9 +89,8 @@ class Factor:
         except RuntimeError:  # exactly singular
             self.exists = False
             return
-        self.negative = int((factors.U.diagonal() <= 0.0).sum())
-        if not np.array_equal(factors.perm_r, factors.perm_c):  # a diagonal entry was zero
-            self.negative = max(1, self.negative)
+        swaps = not np.array_equal(factors.perm_r, factors.perm_c)  # a diagonal entry was zero
+        self._count = lambda: max(int(swaps), int((factors.U.diagonal() <= 0.0).sum()))
         self._solve = factors.solve
 
     @property
@@ -111,7 +113,11 @@ def shifted(matrix: Matrix, weight: Array, share: float = NO_STIFFNESS) -> Matri
     if isinstance(matrix, np.ndarray):
         return matrix + np.diag(share * weight)
     found = matrix.copy()
-    found.setdiag(matrix.diagonal() + share * weight)
+    own = found.indices == np.repeat(np.arange(len(weight)), np.diff(found.indptr))
+    if np.count_nonzero(own) == len(weight):  # all of the diagonal is there: in a tenth of the time
+        found.data[own] += share * weight
+    else:
+        found.setdiag(matrix.diagonal() + share * weight)
     return found
 
 

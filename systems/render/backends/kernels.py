@@ -1,4 +1,4 @@
-"""Rasterising: anti-aliased strokes, rectangles and discs, written straight into the pixels of a surface.
+"""Rasterising: polygons, and anti-aliased strokes, rectangles and discs, written straight into the pixels of a surface.
 
 Points are in pixels, y down; the pixel (row, column) covers [column, column + 1) × [row, row + 1). Pixels are
 four channels of 8 bits, in whatever order. clip: left, top, right, bottom; nothing beyond it is touched.
@@ -41,13 +41,15 @@ def mixed(old, new, part):
 def cover_strokes(cover, touched, clip, start, end, width):
     """Raise `cover` (uint8, rows × columns) to what strokes from `start` to `end`, each (n, 2), cover.
 
-    touched (uint8, rows × blocks of columns): set where they do.
+    touched (uint8, rows × blocks of columns): set where they do. Returns the part of the clip that they can reach: a flat
+    one is at most √2 times as high as it is wide.
 
     The compiled form of raster.stroke_coverage: where strokes cross, the one that covers most counts. Along a
     stroke, where it begins and how much of a column it crosses are whole numbers of 1 / 2¹⁶.
     """
     left, top, right, bottom = clip
     one = float(1 << _ONE)
+    min_x, min_y, max_x, max_y = np.inf, np.inf, -np.inf, -np.inf
     for i in range(len(start)):
         dx, dy = end[i, 0] - start[i, 0], end[i, 1] - start[i, 1]
         steep = abs(dy) > abs(dx)
@@ -72,6 +74,12 @@ def cover_strokes(cover, touched, clip, start, end, width):
                 cover[at] = max(cover[at], amount)
                 touched[at[0], at[1] // _BLOCK] = 1
             low += rise
+        min_x, max_x = min(min_x, start[i, 0], end[i, 0]), max(max_x, start[i, 0], end[i, 0])
+        min_y, max_y = min(min_y, start[i, 1], end[i, 1]), max(max_y, start[i, 1], end[i, 1])
+    beside = 0.75 * width + 1.0
+    low_x, low_y = min(max(min_x - beside, left), right), min(max(min_y - beside, top), bottom)
+    high_x, high_y = max(min(max_x + beside + 1.0, right), left), max(min(max_y + beside + 1.0, bottom), top)
+    return int(low_x), int(low_y), int(high_x), int(high_y)
 
 
 @compiled
@@ -91,6 +99,51 @@ def blend_cover(pixels, cover, touched, clip, colour, opacity):
             for column in range(len(covered)):
                 covered[column] = 0
             touched[row, block] = 0
+
+
+@compiled
+def draw_strokes(pixels, cover, touched, clip, start, end, width, colour, opacity):
+    """Blend strokes into `pixels`; each pixel by the stroke that covers most of it."""
+    blend_cover(pixels, cover, touched, cover_strokes(cover, touched, clip, start, end, width), colour, opacity)
+
+
+@compiled
+def fill_polygons(pixels, clip, corners, colour, opacity):
+    """Blend polygons with `corners` (n, k, 2) in whole pixels into `pixels`, one after the other.
+
+    The same pixels as by pygame.gfxdraw.filled_polygon: in each row between the first crossing of an edge and the second,
+    between the third and the fourth, and so on.
+    """
+    left, top, right, bottom = clip
+    there = np.uint32(256 if opacity == 255 else opacity)
+    rest, half = np.uint32(np.uint32(256) - there), 1 << (_ONE - 1)
+    even_ink, odd_ink = np.uint32((colour & _EVEN) * there), np.uint32(((colour >> _EIGHT) & _EVEN) * there)
+    count = np.zeros(max(bottom - top, 0), dtype=np.int64)  # of crossings, by row
+    crossings = np.empty((len(count), corners.shape[1]), dtype=np.int64)  # in order
+    for i in range(len(corners)):
+        lowest, highest = corners[i, :, 1].min(), corners[i, :, 1].max()
+        for k in range(corners.shape[1]):
+            first, last = (k - 1, k) if corners[i, k - 1, 1] < corners[i, k, 1] else (k, k - 1)
+            x, y, end = corners[i, first, 0], corners[i, first, 1], corners[i, last, 1]
+            for row in range(max(y, top), min(end + int(y < end == highest), bottom)):
+                crossing = ((row - y) << _ONE) // (end - y) * (corners[i, last, 0] - x) + (x << _ONE)
+                place = count[row - top]
+                while place > 0 and crossings[row - top, place - 1] > crossing:
+                    crossings[row - top, place] = crossings[row - top, place - 1]
+                    place -= 1
+                crossings[row - top, place] = crossing
+                count[row - top] += 1
+        for row in range(max(lowest, top), min(highest + 1, bottom)):
+            for k in range(0, count[row - top] - 1, 2):
+                first = (crossings[row - top, k] + 1 + half) >> _ONE
+                last = (crossings[row - top, k + 1] - 1 + half) >> _ONE
+                line = pixels[row, max(min(first, last), left) : max(min(max(first, last) + 1, right), left)]
+                for column in range(len(line)):
+                    old = line[column]
+                    even = np.uint32((old & _EVEN) * rest + even_ink) >> _EIGHT
+                    odd = np.uint32(((old >> _EIGHT) & _EVEN) * rest + odd_ink)
+                    line[column] = np.uint32((even & _EVEN) | (odd & _ODD))
+            count[row - top] = 0
 
 
 @compiled

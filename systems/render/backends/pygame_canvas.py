@@ -19,13 +19,20 @@ from pinjoint.components.wording import UNPRINTABLE
 from pinjoint.systems.program.compiler import Choice, Compile
 from pinjoint.systems.render.backends.raster import Clip, Pixels, Raster, load_raster, stroke_coverage
 from pinjoint.systems.render.clip import clip_polygon
-from pinjoint.systems.render.marks import Bars, Discs, Fills, Panel, Picture, Stamps, Strokes, Text
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Panel, Picture, Stamps, Strokes, Text
 from pinjoint.systems.render.symbols import RIM, turned_parts
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import WEIGHTS, capital_height
 
+_Image = tuple[pygame.Surface, tuple[int, int]]  # and where its upper left corner comes to stand
+
 _WHITE, _BLACK = (255, 255, 255, 255), (0, 0, 0, 255)
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
+_SHIFTS = {
+    "left": 0.0,
+    "centre": 0.5,
+    "right": 1.0,
+}  # shares of their widths by which texts begin before their places
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
 _FILLED = 3e4  # pixels, how far away what is filled may reach
@@ -61,23 +68,36 @@ class Canvas:
         surface.set_clip(pygame.Rect(*v.box).clip(before))
         if picture.background is not None:
             surface.fill(picture.background)
+        images: list[_Image] = []  # those that follow one another are drawn at once
         for mark in picture.marks:
             match mark:
-                case Strokes():
-                    self._strokes(surface, mark)
-                case Stamps():
-                    self._stamps(surface, mark)
-                case Discs():
-                    self._discs(surface, mark)
                 case Text():
-                    self._text(surface, mark)
-                case Fills():
-                    _fill(surface, mark.corners, mark.colour)
-                case Bars():
-                    self._bars(surface, mark)
-                case Panel():
-                    self._panel(surface, mark)
+                    images.append(self._text(mark))
+                case Stamps():
+                    images += self._stamps(mark)
+                case Panel() if mark.radius or mark.outline is not None or mark.fill[3] < 255:
+                    images += self._panel(mark)
+                case _:
+                    surface.fblits(images)
+                    images.clear()
+                    self._area(surface, mark)
+        surface.fblits(images)
         surface.set_clip(before)
+
+    def _area(self, surface: pygame.Surface, mark: Mark) -> None:
+        match mark:
+            case Strokes():
+                self._strokes(surface, mark)
+            case Fills():
+                self._fill(surface, mark)
+            case Discs():
+                self._discs(surface, mark)
+            case Bars() if len(mark.start) > _MANY and (raster := self._raster()):
+                raster.bars(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
+            case Bars():
+                self._fill(surface, Fills(mark.corners, mark.colour))
+            case Panel():
+                surface.fill(mark.fill, _box(mark))
 
     def _kept(self, key: Any, make: Callable[[], Any]) -> Any:
         found = self._cache.get(key)
@@ -105,55 +125,51 @@ class Canvas:
         else:
             _blend(surface, *stroke_coverage(mark.start, mark.end, mark.width), mark.colour)
 
-    def _bars(self, surface: pygame.Surface, mark: Bars) -> None:
-        if len(mark.start) > _MANY and (raster := self._raster()):
-            raster.bars(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
+    def _fill(self, surface: pygame.Surface, mark: Fills) -> None:
+        if self._loaded is not None:
+            self._loaded.fills(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
         else:
             _fill(surface, mark.corners, mark.colour)
 
-    def _panel(self, surface: pygame.Surface, mark: Panel) -> None:
-        left, top = round(mark.left), round(mark.top)
-        size = round(mark.left + mark.width) - left, round(mark.top + mark.height) - top
-        if min(size) <= 0:  # what a window of some pixels leaves of it
-            return
-        if not mark.radius and mark.outline is None and mark.fill[3] == 255:
-            surface.fill(mark.fill, (left, top, *size))
-            return
-        key = ("panel", size, mark.radius, mark.fill, mark.outline)
-        surface.blit(self._kept(key, partial(_rounded, size, mark)), (left, top))
-
     # --- symbols and texts ---------------------------------------------------------------------------
 
-    def _stamps(self, surface: pygame.Surface, mark: Stamps) -> None:
+    def _panel(self, mark: Panel) -> list[_Image]:
+        left, top, *size = _box(mark)
+        if min(size) <= 0:  # what a window of some pixels leaves of it
+            return []
+        key = "panel", *size, mark.radius, mark.fill, mark.outline
+        return [(self._kept(key, partial(_rounded, size, mark)), (left, top))]
+
+    def _stamps(self, mark: Stamps) -> list[_Image]:
         # Pixels; so far away it is not seen, and can be counted in whole numbers.
-        at = np.clip(mark.at, -1e6, 1e6)
-        fine = np.floor(at * _PHASES + 0.5).astype(np.int64)
-        whole, phase = np.divmod(fine, _PHASES)
-        pairs = []
-        for (x, y), (px, py) in zip(whole.tolist(), phase.tolist(), strict=True):
-            key = (mark.symbol, mark.size, mark.unit, mark.ink, mark.hollow, mark.turns, px, py)
-            image, left, top = self._kept(key, partial(_rendered, mark, px / _PHASES, py / _PHASES))
-            pairs.append((image, (x + left, y + top)))
-        surface.fblits(pairs)
+        fine = np.floor(np.minimum(np.maximum(mark.at, -1e6), 1e6) * _PHASES + 0.5).astype(np.int64)
+        key = mark.symbol, mark.size, mark.unit, mark.ink, mark.hollow, mark.turns
+        images, pairs = self._kept(key, dict), []
+        for x, y in fine.tolist():
+            if (phase := (x % _PHASES, y % _PHASES)) not in images:
+                images[phase] = _rendered(mark, phase[0] / _PHASES, phase[1] / _PHASES)
+            image, left, top = images[phase]
+            pairs.append((image, (x // _PHASES + left, y // _PHASES + top)))
+        return pairs
 
     def _discs(self, surface: pygame.Surface, mark: Discs) -> None:
         if len(mark.at) > _MANY and (raster := self._raster()):
             colours = _pixel(surface, mark.ink), _pixel(surface, mark.hollow)
             raster.discs(_pixels(surface), _clip(surface), mark, *colours)
         else:
-            fine = np.round(4.0 * mark.radius)
-            for quarters in np.unique(fine).tolist():
-                size, at = quarters / 4.0, mark.at[fine == quarters]
-                symbol, unit = ("ring", mark.rim / RIM) if mark.rim else ("disc", 1.0)
-                self._stamps(surface, Stamps(symbol, at, size, unit, mark.ink, mark.hollow))
+            fine, (symbol, unit) = (
+                np.round(4.0 * mark.radius),
+                ("ring", mark.rim / RIM) if mark.rim else ("disc", 1.0),
+            )
+            for quarters in sorted(set(fine.tolist())):
+                at = mark.at[fine == quarters]
+                surface.fblits(self._stamps(Stamps(symbol, at, quarters / 4.0, unit, mark.ink, mark.hollow)))
 
-    def _text(self, surface: pygame.Surface, mark: Text) -> None:
-        key = (mark.text, mark.size, mark.colour, mark.weight)
-        font = self._font(mark.size, mark.weight)
-        image = self._kept(key, lambda: _written(font, mark))
-        shift = {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * image.get_width()
-        baseline = round(mark.y + capital_height(mark.size) / 2)
-        surface.blit(image, (round(mark.x - shift), baseline - font.get_ascent()))
+    def _text(self, mark: Text) -> _Image:
+        key = mark.text, mark.size, mark.colour, mark.weight
+        image, middle, ascent = self._kept(key, partial(_written, self._font, mark))
+        left = mark.x - _SHIFTS[mark.anchor] * image.get_width()
+        return image, (round(left), round(mark.y + middle) - ascent)
 
     def _font(self, size: int, weight: str) -> pygame.font.Font:
         font: pygame.font.Font = self._kept(
@@ -162,13 +178,23 @@ class Canvas:
         return font
 
 
-def _written(font: pygame.font.Font, mark: Text) -> pygame.Surface:
-    """A text as an image: what no font can draw as "�", and nothing where there is nothing to see."""
-    text = UNPRINTABLE.sub("�", mark.text[:_LONGEST])
+def _written(font_of: Callable[[int, str], pygame.font.Font], mark: Text) -> tuple[pygame.Surface, float, int]:
+    """A text as an image, and the pixels from the middle of its capitals to the line and from that to its top.
+
+    What no font can draw is "�", and there is nothing where there is nothing to see.
+    """
+    font, text = font_of(mark.size, mark.weight), UNPRINTABLE.sub("�", mark.text[:_LONGEST])
     try:
-        return font.render(text, True, mark.colour[:3])
+        image = font.render(text, True, mark.colour[:3])
     except pygame.error:  # of no width, such as a joiner of characters
-        return pygame.Surface((0, 0))
+        image = pygame.Surface((0, 0))
+    return image, capital_height(mark.size) / 2, font.get_ascent()
+
+
+def _box(mark: Panel) -> tuple[int, int, int, int]:
+    """Left, top, width and height in whole pixels."""
+    left, top = round(mark.left), round(mark.top)
+    return left, top, round(mark.left + mark.width) - left, round(mark.top + mark.height) - top
 
 
 def _fill(surface: pygame.Surface, corners: NDArray[np.float64], colour: Colour) -> None:
@@ -232,7 +258,7 @@ def _rendered(mark: Stamps, phase_x: float, phase_y: float) -> tuple[pygame.Surf
     return pygame.transform.smoothscale(large, size.tolist()), int(low[0]), int(low[1])
 
 
-def _rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
+def _rounded(size: Sequence[int], mark: Panel) -> pygame.Surface:
     """A box with smooth corners: one no larger than its corners need, with its middle stretched."""
     least = 2 * math.ceil(mark.radius) + 5  # the column and row in the middle are part of no corner
     small = _small_rounded((min(size[0], least), min(size[1], least)), mark)

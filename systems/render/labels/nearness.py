@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -50,7 +51,7 @@ class Parts:
     def __init__(self, viewport: Viewport, unit: float) -> None:
         self.viewport, self.unit = viewport, unit
         self._tables: dict[str, int] = {}
-        self._kept: list[_Bands] = []
+        self._kept: list[tuple[Owners, Points, Points, float | Values, Points | float, int]] = []
         self._seen: _Bands
         self._pieces: _Pieces
         self._outlines: _Pieces  # of the bands that are seen, without their width
@@ -66,10 +67,14 @@ class Parts:
         kind: int = SYMBOL,
     ) -> None:
         """Add what lies within `half` of lines from `start` to `end`, each (n, 2), or up to `rise` to one side of them."""
-        codes = self.code((of[0], 0)) + np.asarray(of[1], dtype=np.int64)
-        wide = np.broadcast_to(np.asarray(half, dtype=np.float64), len(start))
-        high = np.broadcast_to(np.asarray(rise, dtype=np.float64), start.shape)
-        self._kept.append(_Bands(start, end, high, wide, codes, np.full(len(start), kind)))
+        self._kept.append((of, start, end, half, rise, kind))
+
+    def _bands(self) -> Iterator[_Bands]:
+        for of, start, end, half, rise, kind in self._kept:
+            codes = self.code((of[0], 0)) + np.asarray(of[1], dtype=np.int64)
+            wide = np.broadcast_to(np.asarray(half, dtype=np.float64), len(start))
+            high = np.broadcast_to(np.asarray(rise, dtype=np.float64), start.shape)
+            yield _Bands(start, end, high, wide, codes, np.full(len(start), kind))
 
     def code(self, key: Owner | None) -> int:
         """What stands for a key in the arguments of the others."""
@@ -131,7 +136,7 @@ class Parts:
         reach = _REACH * self.unit
         low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
         found = []
-        for bands in self._kept:
+        for bands in self._bands():
             finite = np.isfinite((bands.start + bands.end + bands.rise).sum(axis=1))
             half, ends = (
                 bands.half[:, None],

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.camera import Viewport
-from pinjoint.systems.render.labels.nearness import NOBODY, Codes, Parts, within
-from pinjoint.systems.render.marks import Mark, Owners, Panel, Points, Rows, Text, Truths, Values
+from pinjoint.systems.render.labels.nearness import NOBODY, Codes, Parts, ranges, within
+from pinjoint.systems.render.marks import Mark, Owners, Panel, Points, Rows, Text, Truths, Values, owners
 from pinjoint.systems.render.typography import text_width
 
 FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover only in need
@@ -27,8 +28,9 @@ class Occupancy:
         self.cell = _CELL * unit
         shape = (int(viewport.height / self.cell) + 1, int(viewport.width / self.cell) + 1)
         self.taken: Truths = np.zeros(shape, dtype=bool)
-        self.lined: NDArray[np.uint8] = np.zeros(shape, dtype=np.uint8)
-        self.owner: NDArray[np.int64] = np.full(shape, NOBODY)  # of the last line through each cell
+        self._lined: NDArray[np.uint8] = np.zeros(shape, dtype=np.uint8)
+        self._owner: NDArray[np.int64] = np.full(shape, NOBODY)
+        self._lines: list[tuple[Points, Points, int, Owners | None]] = []  # that are in neither yet
         self.parts = Parts(viewport, unit)
 
     def block(self, left: float, top: float, width: float, height: float) -> None:
@@ -57,10 +59,38 @@ class Occupancy:
         Of very many lines only a sample is noted: they leave no room between them in any case. Those that begin or end
         very far away are left out.
         """
-        near = ((np.abs(start) < _FAR) & (np.abs(end) < _FAR)).all(axis=1)
-        some = np.flatnonzero(near)[:: int(near.sum()) // _MANY_LINES + 1]
-        start, end = start[some], end[some]
-        left, top = self.viewport.left, self.viewport.top
+        if len(start) > _MANY_LINES:
+            near = np.flatnonzero(_are_near(start, end))
+            some = near[:: len(near) // _MANY_LINES + 1]
+            start, end, of = start[some], end[some], owners(of, some)
+        self._lines.append((start, end, strength, of))
+
+    @property
+    def lined(self) -> NDArray[np.uint8]:
+        """How strong the last line through each cell is; 0: none."""
+        self._draw_lines()
+        return self._lined
+
+    @property
+    def owner(self) -> NDArray[np.int64]:
+        """Whose the last line through each cell is."""
+        self._draw_lines()
+        return self._owner
+
+    def _draw_lines(self) -> None:
+        """Put all lines that were noted since into the cells, at once."""
+        if not self._lines:
+            return
+        added, self._lines = self._lines, []
+        start, end = (np.concatenate([line[side] for line in added]) for side in (0, 1))
+        strength = np.repeat([line[2] for line in added], [len(line[0]) for line in added])
+        codes = [
+            np.full(len(first), NOBODY) if of is None else self.parts.code((of[0], 0)) + of[1]
+            for first, _, _, of in added
+        ]
+        near, (left, top) = _are_near(start, end), (self.viewport.left, self.viewport.top)
+        if not near.all():
+            start, end, strength, codes = start[near], end[near], strength[near], [np.concatenate(codes)[near]]
         x, y = (start[:, 0] - left) / self.cell, (start[:, 1] - top) / self.cell
         dx, dy = (end[:, 0] - start[:, 0]) / self.cell, (end[:, 1] - start[:, 1]) / self.cell
         count = np.maximum(np.abs(dx), np.abs(dy)).astype(np.intp) + 2
@@ -69,17 +99,17 @@ class Occupancy:
         scale = 1.0 / (count - 1)
         columns = (x[which] + step * (dx * scale)[which]).astype(np.intp)
         rows = (y[which] + step * (dy * scale)[which]).astype(np.intp)
-        height, width = self.lined.shape
+        height, width = self._lined.shape
         ok = (rows >= 0) & (columns >= 0) & (rows < height) & (columns < width)
-        cells = (rows * width + columns)[ok]
-        self.lined.ravel()[cells] = strength
-        if of is not None:
-            self.owner.ravel()[cells] = (self.parts.code((of[0], 0)) + of[1][some])[which[ok]]
+        cells, which = (rows * width + columns)[ok], which[ok]
+        self._lined.ravel()[cells] = strength[which]
+        code = np.concatenate(codes)[which]
+        self._owner.ravel()[cells[code != NOBODY]] = code[code != NOBODY]
 
     def crossed(self, left: float, top: float, width: float, height: float) -> int:
         """How much of a rectangle is taken or crossed by lines, in cells."""
         cells = self._cells(left, top, width, height)
-        return int((self.taken[cells] | (self.lined[cells] > 0)).sum())
+        return int(np.count_nonzero(self.taken[cells] | (self.lined[cells] > 0)))
 
     def is_taken(self, left: float, top: float, width: float, height: float) -> bool:
         """Whether a label, a panel or a symbol takes any of a rectangle."""
@@ -135,8 +165,23 @@ class Occupancy:
         high = within(within((corners + sizes) / self.cell, -1.0, most).astype(np.intp) + 1, low, most)
         return np.concatenate([low, high], axis=1)
 
+    def cells_along(self, start: Points, end: Points, apart: float) -> list[Rows]:
+        """The cells, counted row by row, at points so far apart from the `end` of each line to its `start`, (n, 2)."""
+        count = (np.hypot(*(end - start).T) / apart).astype(np.intp) + 2
+        which = np.repeat(np.arange(len(count)), count)
+        share = ranges(np.zeros_like(count), count) / count[which]
+        rows, columns = self.cell_of(end[which] + share[:, None] * (start - end)[which]).T
+        cells = rows * self.taken.shape[1] + columns
+        return [cells[first:last] for first, last in pairwise([0, *np.cumsum(count).tolist()])]
+
     def _cells(self, left: float, top: float, width: float, height: float) -> tuple[slice, slice]:
         """Rows and columns of the cells that a rectangle touches; they may end beyond the last ones."""
         x, y = left - self.viewport.left, top - self.viewport.top
         columns = slice(max(int(x / self.cell), 0), max(int((x + width) / self.cell) + 1, 0))
         return slice(max(int(y / self.cell), 0), max(int((y + height) / self.cell) + 1, 0)), columns
+
+
+def _are_near(start: Points, end: Points) -> Truths:
+    """Which lines begin and end not very far away."""
+    near: Truths = (np.abs(start) < _FAR) & (np.abs(end) < _FAR)
+    return near[:, 0] & near[:, 1]

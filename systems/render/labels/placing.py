@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import pairwise
 from typing import Literal, NamedTuple
 
@@ -36,6 +37,10 @@ _STAGES = 0, 3, 1000
 _COVERED = {"cover": (STRONG,), "spare": (FAINT, STRONG), "avoid": (0,)}  # by each attempt, at most
 
 
+NO_LINE = (
+    np.empty((0, 2)),
+    np.array([0.0, -1.0]),
+)  # the anchors of a label from which none may lead, and its way out
 GIVEN = "particles.applied"  # how names of the fields of loads begin
 
 Key = tuple[str, int]  # such as ("rods.axial_force", its row)
@@ -65,8 +70,8 @@ class Label(NamedTuple):
     key: Key | None = None
     of: Owner | None = None
     own: Owner | None = None
-    anchors: Points = np.empty((0, 2))
-    outward: Points = np.array([0.0, -1.0])
+    anchors: Points = NO_LINE[0]
+    outward: Points = NO_LINE[1]
     close: int = 0
     short: str = ""
     small: bool = False
@@ -80,9 +85,11 @@ class Label(NamedTuple):
         return self._replace(text=self.short, size=font_size(_SMALL, unit), small=True)
 
 
+_Line = tuple[Points, Points, Rows]  # from a label to what it belongs to, and the cells along it
 Numbered = tuple[int, Label, list[Mark]]  # a number that stands for a value, and its marks; 0: no room for it
 
 
+@lru_cache(maxsize=8192)
 def half_size(text: str, size: int, weight: str, unit: float) -> tuple[float, float]:
     """Half the width and height in pixels of a label, its margins included."""
     return text_width(text, size, weight) / 2 + 3.5 * unit, line_height(size) / 2 + 0.5 * unit
@@ -162,9 +169,11 @@ class _Placing:
         inside = within(middle, low + half, high - half)
         free = ~(led & (middle != inside).any(axis=1))
         cells = self.occupancy.cells_of(inside - half, 2.0 * half).tolist()
+        start, end = within(ends, inside - half, inside + half)[led], ends[led]
+        lines = zip(start, end, self.occupancy.cells_along(start, end, _STEP * self.unit), strict=True)
         for k, label in enumerate(held):
-            end = ends[k] if led[k] else None
-            if not (free[k] and self._stand(label, int(place[k]), inside[k], half[k], cells[k], end)):
+            line = next(lines) if led[k] else None
+            if not (free[k] and self._stand(label, int(place[k]), inside[k], cells[k], line)):
                 left += [label] * bool(label.short)
         return sorted(left, key=lambda label: label.rank), numbers
 
@@ -220,11 +229,13 @@ class _Placing:
         start = within(end, middle - half[of], middle + half[of])
         cells = self.occupancy.cells_of(middle - half[of], 2.0 * half[of]).tolist()
         led, others = set[int](), 0
-        for k in _meet_nothing(start, end, own[of], kin[of], self.occupancy).tolist():
+        possible = _meet_nothing(start, end, own[of], kin[of], self.occupancy)
+        along = self.occupancy.cells_along(start[possible], end[possible], _STEP * self.unit)
+        for k, line in zip(possible.tolist(), along, strict=True):
             number, label = int(of[k]), labels[of[k]]
             if number in led or (not label.short and others == _MOST_LED):
                 continue
-            if self._stand(label, int(place[k]), middle[k], half[number], cells[k], end[k]):
+            if self._stand(label, int(place[k]), middle[k], cells[k], (start[k], end[k], line)):
                 led.add(number)
                 others += not label.short
         return [label for number, label in enumerate(labels) if number not in led]
@@ -289,19 +300,17 @@ class _Placing:
         return found
 
     def _stand(
-        self, label: Label, place: int, middle: Points, half: Points, cells: Sequence[int], end: Points | None
+        self, label: Label, place: int, middle: Points, cells: Sequence[int], line: _Line | None
     ) -> bool:
-        """Let a label stand there, if all that it and a line to its `end` take is free."""
+        """Let a label stand there, if all that it and a line take is free."""
         taken, (left, top, right, bottom) = self.occupancy.taken, cells
-        if taken[top:bottom, left:right].any():
+        if np.count_nonzero(taken[top:bottom, left:right]):
             return False
-        if end is not None:
-            start = within(end, middle - half, middle + half)
-            count = int(np.hypot(*(end - start)) / (_STEP * self.unit)) + 2
-            row, column = self.occupancy.cell_of(end + np.arange(count)[:, None] / count * (start - end)).T
-            if taken[row, column].any():
+        if line is not None:
+            start, end, along = line
+            if np.count_nonzero(taken.ravel()[along]):
                 return False
-            taken[row, column] = True
+            taken.ravel()[along] = True
             table, row = label.of or ("", 0)
             self.lines.setdefault((table, label.colour), []).append((row, start, end))
         taken[top:bottom, left:right] = True

@@ -127,13 +127,14 @@ def draw_diagrams(sheet: Sheet, taken: float = 0.0) -> None:
     rows, start, end = sheet.rods[shown], sheet.start[shown], sheet.end[shown]
     quantity = sheet.view.quantity if sheet.is_frame else AXIAL
     force = np.nan_to_num(sheet.model.rods.axial_force)
-    if typical_length(start, end) < _SHORTEST * sheet.unit and not (sheet.is_frame and len(rows) <= _MANY):
+    length = sheet.rod_length if shown.all() else typical_length(start, end)
+    if length < _SHORTEST * sheet.unit and not (sheet.is_frame and len(rows) <= _MANY):
         if quantity == AXIAL:
             sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST], rows[force[rows] < -SMALLEST]
         sheet.advise(tr("zoom in to see force diagrams"))
         return
     window = min(sheet.viewport.width, sheet.viewport.height)  # what leaves the structure readable:
-    room = max(min(0.15 * window, 0.6 * typical_length(start, end)), 10.0 * sheet.unit)
+    room = max(min(0.15 * window, 0.6 * length), 10.0 * sheet.unit)
     diagram = (
         _curves(sheet, rows, quantity, min(_ROOM * room, MARGIN * sheet.unit), taken)
         if sheet.is_frame
@@ -412,10 +413,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
         of, key, rank = ("rods", row), (field, int(keys[shown[k]])), -float(worth[k])
         sign = "zero" if abs(value[k]) <= SMALLEST else "tension" if value[k] > 0.0 else "compression"
         colour = _colour(sheet, sign) if quantity == AXIAL else sheet.colour_of("text")
-        leads, short = (
-            (anchors[k], normal[k]),
-            _written(sheet, quantity, float(value[k]), nothing, few=False) if told else "",
-        )
+        short = texts[k] if not few else _written(sheet, quantity, float(value[k]), nothing, few=False)
         write(
             sheet,
             texts[k],
@@ -425,10 +423,10 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
             of,
             rank=rank,
             own=of,
-            leads=leads,
+            leads=(anchors[k], normal[k]),
             size=size,
             lines=lines,
-            short=short,
+            short=short if told else "",
         )
 
 

@@ -62,6 +62,9 @@ _WIDEST_GAP, _GAP_SHARE = 84.0, 0.36  # between a joint and its rod drawn apart:
 _ARC = {"load": 15.0, "reaction": 21.0}  # points, radii of the arrows of moments
 _SWEEP = np.radians(250.0)  # of these arrows
 _PIECES = 20
+# Ways from the middle of such an arrow to its value, corners first.
+_AROUND = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])
+_AROUND = np.stack([np.cos(_AROUND), -np.sin(_AROUND)], axis=1)
 
 
 def draw_hinges(sheet: Sheet) -> None:
@@ -382,8 +385,6 @@ def write_moment(
     """Write the size of a moment outside its arrow; text: in place of the number as a person gave it; of: not a particle."""
     bare = written.given(abs(moment), written.DIGITS)
     text = text or (written.stated(abs(moment), "kN·m", written.DIGITS) if sheet.view.has_units else bare)
-    angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
-    out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
     short = text if key[0] == "particles.reaction_moment" else ""
     whose = key, of or ("particles", key[1]), key
-    write_around(sheet, at, radius, out, text, colour, whose, abs(moment), short)
+    write_around(sheet, at, radius, _AROUND, text, colour, whose, abs(moment), short)

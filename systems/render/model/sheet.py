@@ -48,7 +48,8 @@ class Sheet:
     pixels of those that look bent, by their place among `rods`; None: none does. particles: rows of those that can be seen.
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
     shades: rows of rods and the colours that show a quantity of theirs. above: marks to be drawn over rods and particles.
-    placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
+    placed: where labels were in the last picture. rod_length: the typical one of rods in pixels, as far as they are seen.
+    legend: names of the colours that occur and mean something.
     notes: scales to be shown. scales: those of arrows and the place of the scale, to be kept in `placed`. values: how many
     there are to show, by field, if there were room for all.
     """
@@ -66,6 +67,7 @@ class Sheet:
     particles: Rows
     occupancy: Occupancy
     placed: Placed
+    rod_length: float
     is_frame: bool = False
     curved: Lines | None = None
     pulled: Rows = field(default_factory=lambda: np.empty(0, dtype=np.intp))
@@ -78,11 +80,6 @@ class Sheet:
     shades: list[tuple[Rows, Colour]] = field(default_factory=list)
     scales: Placed = field(default_factory=dict)
     values: Counter[str] = field(default_factory=Counter)
-
-    @cached_property
-    def rod_length(self) -> float:
-        """The typical length of rods in pixels, as far as they are seen."""
-        return typical_length(self.start, self.end)
 
     @cached_property
     def arcs(self) -> Values:
@@ -176,7 +173,8 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     if frame:
         lines = curved_lines(model, FLAT / camera.scale, rods)
     curved = _visible(lines, rods, view, (low - margin, high + margin)) if lines is not None else None
-    smallest = float(np.clip(0.18 * typical_length(start, end), *np.array(_SMALLEST) * unit))
+    rod_length = typical_length(start, end)
+    smallest = min(max(0.18 * rod_length, _SMALLEST[0] * unit), _SMALLEST[1] * unit)
     radii: Values = np.maximum(model.particles.radius * camera.scale, smallest)
     if frame:
         radii[rigid_joints(model) & (radii == smallest)] = _JOINT * smallest
@@ -186,7 +184,9 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     particles, occupancy = np.flatnonzero(seen), Occupancy(viewport, unit)
     placed = {} if placed is None else placed
     seen_of = rods, start, end, particles
-    return Sheet(model, view, theme, unit, centres, radii, ends, *seen_of, occupancy, placed, frame, curved)
+    found = Sheet(model, view, theme, unit, centres, radii, ends, *seen_of, occupancy, placed, rod_length)
+    found.is_frame, found.curved = frame, curved
+    return found
 
 
 def _visible(lines: Lines, rods: Rows, view: View, within: tuple[Points, Points]) -> Lines:

@@ -49,7 +49,7 @@ def support_sides(sheet: Sheet) -> NDArray[np.int64]:
     x = sheet.model.particles.position[:, 0]
     middle = 0.5 * (x.min() + x.max()) if len(x) else 0.0
     sides = freest_sides(fixed, crowd, x > middle)
-    clamped = np.flatnonzero(fixed.all(axis=1) & clamps(sheet.model))
+    clamped = np.flatnonzero(fixed[:, 0] & fixed[:, 1] & clamps(sheet.model))
     opposite = np.roll(crowd[clamped], 2, axis=1)
     sides[clamped] = np.argmin(crowd[clamped] - opposite + _RELUCTANCE / 10.0, axis=1)
     if is_sprung(sheet.model):
@@ -78,16 +78,14 @@ def freest_sides(fixed: Truths, crowd: Values, right: Truths) -> NDArray[np.int6
     and above only where all else is crowded, or left and right are alike. right: which stand in the right half of the
     structure. So what is symmetrical stays so.
     """
-    sides = np.full(len(fixed), NO_SUPPORT)
-    x, y = fixed[:, 0], fixed[:, 1]
+    sides, held = np.full(len(fixed), NO_SUPPORT), np.flatnonzero(fixed[:, 0] | fixed[:, 1])
+    (x, y), crowd, right = fixed[held].T, crowd[held], right[held]
     vertical = np.where(crowd[:, UP] < crowd[:, DOWN] - 0.3, UP, DOWN)
     freer = crowd[:, LEFT] - crowd[:, RIGHT]
     horizontal = np.where(np.where(right, freer > -0.3, freer > 0.3), RIGHT, LEFT)
-    sides[y & ~x] = vertical[y & ~x]
-    sides[x & ~y] = horizontal[x & ~y]
     cost = crowd + _RELUCTANCE
     cost[np.abs(freer) <= _ALIKE, RIGHT::2] = np.inf
-    sides[x & y] = np.argmin(cost[x & y], axis=1)
+    sides[held] = np.where(x & y, np.argmin(cost, axis=1), np.where(x, horizontal, vertical))
     return sides
 
 

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from pinjoint.components import written
-from pinjoint.systems.render.labels.placing import Key, Label, half_size
+from pinjoint.systems.render.labels.placing import NO_LINE, Key, Label, half_size
 from pinjoint.systems.render.marks import Owner, Points, Rows, Values
 from pinjoint.systems.render.model.sheet import Sheet
 from pinjoint.systems.render.theme import Colour, faded
@@ -99,15 +99,16 @@ def write(
     *,
     rank: float = FIRST,
     own: Owner | None = None,
-    leads: tuple[Points, Points] | None = None,
+    leads: tuple[Points, Points] = NO_LINE,
     size: int = 0,
     lines: Literal["cover", "spare", "avoid"] = "spare",
     short: str = "",
 ) -> None:
     """Add a value to the labels of a picture, see there. leads: its anchors, and which way it had best stand from them."""
     font, backing = size or sheet.font(12.0), faded(sheet.theme.background, BACKING)
-    label = Label(text, places, font, colour, rank, "semibold", backing, lines, key, of, own, short=short)
-    sheet.labels.append(label._replace(anchors=leads[0], outward=leads[1]) if leads else label)
+    sheet.labels.append(
+        Label(text, places, font, colour, rank, "semibold", backing, lines, key, of, own, *leads, short=short)
+    )
     sheet.values[key[0]] += 1
 
 

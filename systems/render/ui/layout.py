@@ -101,16 +101,16 @@ class Text(Part):
         return next((size for size in sizes if text_width(self.text, size, self.weight) <= width), sizes[-1])
 
     def width(self, u: float) -> float:
-        if self.wide:
-            return self.wide * u
-        return max(text_width(line, self.size(u), self.weight) for line in self.text.split("\n"))
+        return self.wide * u or text_width(self.text, self.size(u), self.weight)
 
     def height(self, u: float, width: float) -> float:
-        return len(self._lines(u, width)) * self._apart(u)
+        lines = 1 if self.lines == 1 else len(self._lines(self.size(u, width), width))
+        return lines * self._apart(u)
 
     def put(self, paper: Paper, place: Rectangle) -> None:
         u, size = paper.unit, self.size(paper.unit, place.width)
-        lines, apart = self._lines(u, place.width), self._apart(u)
+        lines = self._lines(size, place.width)
+        apart = self._apart(u) if len(lines) > 1 else 0.0
         x = place.left + {"left": 0.0, "centre": 0.5, "right": 1.0}[self.anchor] * place.width
         y = place.middle[1] - (len(lines) - 1) * apart / 2
         for number, line in enumerate(lines):
@@ -121,8 +121,7 @@ class Text(Part):
     def _apart(self, u: float) -> float:
         return self.apart * u or line_height(self.size(u))
 
-    def _lines(self, u: float, width: float) -> Sequence[str]:
-        size = self.size(u, width)
+    def _lines(self, size: int, width: float) -> Sequence[str]:
         width += 0.01  # pixels: what is as wide as its place is whole, whatever sums of widths were rounded to
         if self.lines == 1:
             return [shortened(self.text, width, size, self.weight)]
@@ -177,7 +176,7 @@ class Group(Part):
     down: ClassVar[bool] = False
 
     def width(self, u: float) -> float:
-        each = [part.width(u) for part in self.parts]
+        each = self._each(u)
         wide = max(each, default=0.0) if self.down else self._whole(each, u)
         return max(wide + 2 * self.around[0] * u, self.wide * u)
 
@@ -204,8 +203,15 @@ class Group(Part):
         taken = len(each) * max(each, default=0.0) if self.even else sum(each)
         return taken + max(len(each) - 1, 0) * self.gap * u
 
+    def _each(self, u: float) -> list[float]:
+        """The pixels that each part needs across, for which those around ask again and again."""
+        known: dict[float, list[float]] = vars(self).setdefault("_known", {})
+        if u not in known:
+            known[u] = [part.width(u) for part in self.parts]
+        return known[u]
+
     def _widths(self, u: float, room: float) -> list[float]:
-        return self._shared([part.width(u) for part in self.parts], room, u)
+        return self._shared(self._each(u), room, u)
 
     def _heights(self, u: float, width: float) -> list[float]:
         widths = [width] * len(self.parts) if self.down else self._widths(u, width)
@@ -217,6 +223,8 @@ class Group(Part):
         if self.even:
             return [room / max(len(needed), 1)] * len(needed)
         left, shares = room - sum(needed), [part.grow for part in self.parts]
+        if not any(shares):
+            return needed
         if left < 0.0:  # who needs more gives more
             shares = [share * n for share, n in zip(shares, needed, strict=True)]
         total = sum(shares) or 1.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 from itertools import product
 
 import numpy as np
@@ -115,7 +115,7 @@ def heading_height(text: str, width: float, unit: float, theme: Theme, explained
     if not explained:
         return height
     right = EDGE * unit + min(heading.width(unit), room)
-    plates, beside = _arranged(meanings_of(explained), theme, width, right, unit)
+    plates, beside = _arranged(tuple(meanings_of(explained).items()), theme, width, right, unit)
     rows = len(plates) * _ROW * unit
     return max(height, rows + 2 * _ABOVE * unit - 4.0 * unit) if beside else height + rows
 
@@ -276,13 +276,14 @@ UNITS = {
     "inertia": "kN",
     "inertia moment": "kN·m",
 }  # by what occurs of a colour
+_MEANT = {name: [of for of in UNITS if of.split(" ")[0] == name] for name in MEANINGS}  # what shares a colour
 
 
 def meanings_of(legend: Sequence[str]) -> dict[str, str]:
     """The colours of a legend, in order, and what they mean, with the units that occur."""
     found = {}
     for name, meaning in MEANINGS.items():
-        units = [on_screen(unit)[0] for of, unit in UNITS.items() if of.split(" ")[0] == name and of in legend]
+        units = [on_screen(UNITS[of])[0] for of in _MEANT[name] if of in legend]
         if units or name in legend:
             said = tr(meaning)
             found[name] = f"{said} ({', '.join(units)})" if units else said
@@ -298,7 +299,7 @@ def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark],
     meanings = meanings_of([*sheet.legend, *_theory(sheet)]) if sheet.view.legend and sheet.legend else {}
     if not meanings or v.width < LEAST_MODEL * u:
         return [], heading_end
-    plates, beside = _arranged(meanings, theme, v.width, right - v.left, u)
+    plates, beside = _arranged(tuple(meanings.items()), theme, v.width, right - v.left, u)
     top = v.top + _ABOVE * u if beside else heading_end + 8.0 * u
     paper = Paper(u)
     for plate in plates:
@@ -314,8 +315,9 @@ def _theory(sheet: Sheet) -> tuple[str, ...]:
     return () if sheet.model.solution is None else (FIRST_ORDER if sheet.model.first_order else EXACT,)
 
 
+@lru_cache(maxsize=16)  # pictures of a model have two at most
 def _arranged(
-    meanings: dict[str, str], theme: Theme, width: float, heading: float, u: float
+    meanings: tuple[tuple[str, str], ...], theme: Theme, width: float, heading: float, u: float
 ) -> tuple[list[Plate], bool]:
     """A legend in rows, and whether it stands beside the heading, which takes the left up to `heading`, else below it."""
     entries = [
@@ -326,7 +328,7 @@ def _arranged(
             ),
             6.0,
         )
-        for name, said in meanings.items()
+        for name, said in meanings
         for wide in (_BAR_WIDTH if name in _SCALES else 16.0,)
     ]
     room = width - heading - (_ABOVE + _BETWEEN + 2 * _PAD) * u

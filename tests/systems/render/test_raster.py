@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.field import Vector
-from pinjoint.systems.render.backends.pygame_canvas import Canvas
-from pinjoint.systems.render.backends.raster import _around, load_raster, stroke_coverage
-from pinjoint.systems.render.marks import Bars, Discs, Mark, Picture, Points, Strokes
+from pinjoint.systems.render.backends.kernels import BLOCK, cover_strokes
+from pinjoint.systems.render.backends.pygame_canvas import Canvas, _fill, _pixel, _pixels
+from pinjoint.systems.render.backends.raster import load_raster, stroke_coverage
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Picture, Points, Strokes
 
 BLACK, WHITE = (0, 0, 0, 255), (255, 255, 255, 255)
 SIZE = 40
@@ -44,6 +45,18 @@ def test_strokes_are_those_of_small_pictures(width: float) -> None:
     far = np.tile([[-1e4, 0.0]], (3000, 1)), np.tile([[-2e4, 0.0]], (3000, 1))
     mark = Strokes(np.concatenate([start, far[0]]), np.concatenate([end, far[1]]), width, BLACK)
     assert np.abs(darkness(mark) - expected).max() < 1.5 / 255.0  # sums of float32 there, of float64 here
+
+
+@pytest.mark.parametrize("spread", [3.0, 30.0, 9000.0])
+def test_polygons_are_those_of_pygame(spread: float) -> None:
+    rng, found, expected = np.random.default_rng(2), *(pygame.Surface((SIZE, SIZE), depth=32) for _ in "12")
+    for opacity in (0, 1, 40, 229, 254, 255) * 10:
+        corners = rng.normal(SIZE / 2, spread, (3, int(rng.integers(3, 20)), 2))
+        colour = (*rng.integers(0, 256, 3).tolist(), opacity)
+        load_raster().fills(_pixels(found), (4, 3, 30, 40), Fills(corners, colour), _pixel(found, colour))
+        expected.set_clip((4, 3, 26, 37))
+        _fill(expected, corners, colour)
+        assert found.get_buffer().raw == expected.get_buffer().raw
 
 
 def test_translucent_strokes_do_not_add_up_where_they_cross() -> None:
@@ -166,6 +179,7 @@ def test_what_strokes_can_reach_lies_within_the_clip(shift: Vector) -> None:
         np.array([[10.0, 20.0], [90.0, 300.0]]) + shift,
         np.array([[50.0, 20.0], [170.0, 10.0]]) + shift,
     )
-    left, top, right, bottom = _around((5, 7, 160, 360), Strokes(start, end, 2.0, (0, 0, 0, 255)))
+    cover, touched = np.zeros((360, 160), dtype=np.uint8), np.zeros((360, 160 // BLOCK), dtype=np.uint8)
+    left, top, right, bottom = cover_strokes.py_func(cover, touched, (5, 7, 160, 360), start, end, 2.0)
     assert 5 <= left <= right <= 160
     assert 7 <= top <= bottom <= 360
