@@ -100,7 +100,7 @@ def solve(model: Model) -> Solution:
         stiffness += np.einsum("ipa,pa,jpa->ij", fields, whole.springs, fields)
         size = np.sqrt(np.diag(stiffness))
         stiffness = np.where(np.abs(stiffness) > ROUNDING * np.outer(size, size), stiffness, 0.0)
-        displacement = np.linalg.solve(stiffness, load)
+        displacement = np.linalg.solve(stiffness, load).astype(np.float64)
     else:
         stiffness = np.asarray(whole.initial_tangent)
         displacement = whole.gather(real_theory.theory.deflection(whole.spread(load)))
