@@ -105,7 +105,9 @@ def working(guide: DisplacementGuide) -> tuple[str, ...]:
             "Hinged ends turn by themselves: they need no unknown, and resist with 3EI/L in place of 4EI/L."
         )
         listed = ",  ".join(unknown(tables, i) for i in every)
-        return (listed, *([hinged] if guide.count.hinges else []))
+        firm = tr("Inextensible rods take other directions along, which are no unknowns.")
+        more = [hinged] * bool(guide.count.hinges) + [firm] * bool(guide.model.rods.inextensible.any())
+        return (listed, *more)
     if guide.part == 3:
         return (tr("F: the loads on joints, less the fixed-end forces of the members."),)
     if guide.part == 4:

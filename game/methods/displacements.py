@@ -50,7 +50,8 @@ class DisplacementTables(Tables):
     def coefficients(self) -> Table:
         """Forces at the ends of the members by unit displacements in their own axes: N, V by δ, M₁ and M₂ by φ₁ and φ₂."""
         rods, length = self.model.rods, self.model.rods.rest_length
-        columns = [Column("L", "m", length), Column("N/δ", "kN/m", rods.stiffness / length)]
+        stretching = np.where(rods.inextensible, np.nan, rods.stiffness / length)
+        columns = [Column("L", "m", length), Column("N/δ", "kN/m", stretching)]
         if self.bends:
             first, mixed, second = rods.end_stiffness.T
             for title, unit, values in (
@@ -98,7 +99,7 @@ class DisplacementTables(Tables):
         """What every rod adds to an entry of K, or behind its last column to F (rods,)."""
         if j < len(self.solution.unknowns):
             return self.solution.shares(i, j)
-        added: Array = -(self.fixed_end_forces * (self.solution.places == i)).sum(axis=1)
+        added: Array = -(self.fixed_end_forces * self.solution.ways[:, :, i]).sum(axis=1)
         return added
 
     def terms(self, i: int, j: int) -> list[tuple[str, float]]:

@@ -3,8 +3,9 @@ theory about original positions.
 
 The kinematically determinate structure has all its unknowns Δ held. Under the load its holds need forces R₀, those at the
 ends of the members that a table of fixed-end forces has; a unit of one unknown alone takes forces k at all of them. Without
-holds these are none: K Δ = F, with F = −R₀. K is the sum of what the members add, as statics assembles it,
-and of springs of supports.
+holds these are none: K Δ = F, with F = −R₀. K is the sum of what members and springs of supports add, as statics assembles
+it. Inextensible rods take some directions along with others, which then are no unknowns; their axial forces follow from
+equilibrium in every state, as what statics finds for the held structure.
 
 Ends of members that are hinged need no unknown of their own: what holds them is 0 however they turn, and k is without them.
 """
@@ -15,18 +16,20 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import qr
 
 from pinjoint.components.model import Model
 from pinjoint.components.theory import FIRST_ORDER
-from pinjoint.systems.statics.equations import Array, Rows, Structure
-from pinjoint.systems.statics.explain import rod_names
+from pinjoint.systems.statics.equations import Array, Flags, Structure
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.force_method import real_structure
-from pinjoint.systems.statics.superposition import SetState, Superposition
-from pinjoint.systems.statics.theory import elastic
+from pinjoint.systems.statics.superposition import ROUNDING, SetState, Superposition
+from pinjoint.systems.statics.theory import FirstOrder
 from pinjoint.systems.statics.unknowns import MethodError, Unknown
 
 MOST = 300  # unknowns, each of which has a state of its own
+_LEAST = 1e-9  # of how a direction changes the length of an inextensible rod; less is rounding
+_LATER = 1.01  # times the first direction, the last is preferred as one that is taken along
 
 
 @dataclass(frozen=True)
@@ -34,15 +37,15 @@ class Solution(Superposition):
     """K Δ = F of n unknowns, in m, rad, kN, kN·m; they are free directions of particles.
 
     stiffness: K (n, n). load: F (n,). displacement: Δ (n,). members: k of every rod over the coordinates of both its ends,
-    along the axes of supports, (rods, 2 × width, 2 × width). places: the number of the unknown that each of these is, −1
-    where it is held, (rods, 2 × width).
+    along the axes of supports, (rods, 2 × width, 2 × width). ways: how these move by units of unknowns, (rods, …, n):
+    1 where one is that unknown; where inextensible rods take others along, more.
     """
 
     stiffness: Array
     load: Array
     displacement: Array
     members: Array
-    places: Rows
+    ways: Array
 
     @property
     def amounts(self) -> Array:
@@ -53,19 +56,22 @@ class Solution(Superposition):
     def _rounding(self) -> Array:
         """What of an entry of K is nothing, (n, n)."""
         size = np.sqrt(np.diag(self.stiffness))
-        return 1e-12 * np.outer(size, size)
+        return ROUNDING * np.outer(size, size)
 
     def shares(self, i: int, j: int) -> Array:
         """What every rod adds to an entry of K (rods,), 0 but for rounding where it adds nothing."""
-        both = (self.places == i)[:, :, None] & (self.places == j)[:, None, :]
-        added = (self.members * both).sum(axis=(1, 2))
+        added = ((self.ways[:, :, i, None] * self.members).sum(axis=1) * self.ways[:, :, j]).sum(axis=1)
         return np.where(np.abs(added) > self._rounding[i, j], added, 0.0)
 
 
 def solve(model: Model) -> Solution:
-    """The displacement method for all free directions of joints. Raises MethodError."""
+    """The displacement method for all free directions of joints, of those that inextensible rods join as many as needed.
+
+    Raises MethodError.
+    """
     whole = replace(Structure.of(model, FIRST_ORDER), sparse=False)
-    count, width = whole.size, whole.width
+    independent = _independent(whole)
+    count, width = int(independent.sum()), whole.width
     if count > MOST:
         raise MethodError(
             "The structure has {count} unknown displacements. The displacement method is shown up to {most}; statics"
@@ -73,35 +79,51 @@ def solve(model: Model) -> Solution:
             count=count,
             most=MOST,
         )
-    if len(firm := whole.inextensible):
-        raise MethodError(
-            "Unknown displacements are shown with the EA of all rods, but {rods} counts as inextensible. Let it have its EA;"
-            " statics solves the structure as it is.",
-            rods=rod_names(model, firm[:1]),
-        )
-    released, real = real_structure(model)
-    held = replace(whole, fixed=whole.fixed | whole.unknown, unknown=np.zeros_like(whole.unknown))
+    real_theory, real = real_structure(model)
+    held = replace(whole, fixed=whole.fixed | independent, unknown=whole.unknown & ~independent)
+    theory = FirstOrder(model, held)
     moved = whole.field(model.particles.displacement, model.particles.rotation)
     supports, nothing = whole.of_supports(moved), np.zeros(moved.shape)
-    base = _state(model, held, External.of(model).at(1.0), supports, 1.0)
-    number = np.full(moved.size, -1, dtype=np.intp)
-    number[whole.index] = np.arange(count)
-    load = whole.gather(-base.reaction[:, :width]) + 0.0
-    return Solution(
-        tuple(Unknown(model.particles[row], axis) for row, axis in np.argwhere(whole.unknown).tolist()),
-        real,
-        base,
-        tuple(_state(model, held, nothing, whole.spread(unit), 0.0) for unit in np.eye(count)),
-        stiffness=np.asarray(whole.initial_tangent),
-        load=load,
-        displacement=whole.gather(released.theory.deflection(whole.spread(load))),
-        members=whole.stiffnesses,
-        places=number.reshape(-1, width)[whole.ends].reshape(-1, 2 * width),
+    at = tuple(np.argwhere(independent).T)
+    units = np.zeros((count, *moved.shape))
+    units[(np.arange(count), *at)] = 1.0
+    base = _state(model, theory, External.of(model).at(1.0), supports, 1.0)
+    alone = tuple(_state(model, theory, nothing, whole.along_axes(unit), 0.0) for unit in units)
+    firm = np.isin(np.arange(len(whole.ends)), whole.inextensible)
+    members = replace(whole, stiffness=np.where(firm, 0.0, whole.stiffness)).stiffnesses
+    fields = np.array([whole.along_supports(whole.field(one.displacement, one.rotation)) for one in alone])
+    fields = fields.reshape(count, *moved.shape)
+    ways = np.moveaxis(fields[:, whole.ends].reshape(count, len(whole.ends), 2 * width), 0, 2)
+    load = -whole.along_supports(base.reaction[:, :width])[at] + 0.0
+    if firm.any():
+        stiffness = np.einsum("rai,rab,rbj->ij", ways, members, ways)
+        stiffness += np.einsum("ipa,pa,jpa->ij", fields, whole.springs, fields)
+        size = np.sqrt(np.diag(stiffness))
+        stiffness = np.where(np.abs(stiffness) > ROUNDING * np.outer(size, size), stiffness, 0.0)
+        displacement = np.linalg.solve(stiffness, load).astype(np.float64)
+    else:
+        stiffness = np.asarray(whole.initial_tangent)
+        displacement = whole.gather(real_theory.theory.deflection(whole.spread(load)))
+    unknowns = tuple(
+        Unknown(model.particles[row], axis) for row, axis in zip(*map(np.ndarray.tolist, at), strict=True)
     )
+    return Solution(unknowns, real, base, alone, stiffness, load, displacement, members, ways)
 
 
-def _state(model: Model, held: Structure, load: Array, moved: Array, share: float) -> SetState:
+def _independent(whole: Structure) -> Flags:
+    """The unknowns (n, …) less those that others and inextensible rods take along: of each of these rods one."""
+    found = whole.unknown.copy()
+    if len(whole.inextensible):
+        along = whole.elongations(whole.unmoved, whole.inextensible)
+        later = along * np.linspace(1.0, _LATER, whole.size)
+        factor, order = qr(later, mode="r", pivoting=True)  # those by which others are told best
+        rank = int((np.abs(np.diag(factor)) > _LEAST).sum())
+        found.ravel()[whole.index[order[:rank]]] = False
+    return found
+
+
+def _state(model: Model, theory: FirstOrder, load: Array, moved: Array, share: float) -> SetState:
     """That of the held structure displaced so (n, …), under a load (n, …) and a share of what acts without one."""
-    rods = held.grown(share)
-    response = elastic(rods, moved, share * model.rods.plastic_strain, share)
-    return SetState.of(model, rods, load, moved, response, np.zeros(held.ends.shape))
+    rods, strain = theory.structure.grown(share), share * model.rods.plastic_strain
+    place, response = theory.equilibrium(load, moved, strain, share, rods)
+    return SetState.of(model, rods, load, place, response, np.zeros(rods.ends.shape))

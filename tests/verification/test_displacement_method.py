@@ -1,5 +1,7 @@
 """The displacement method: slope deflection by hand, matrices of members from textbooks, statics, the force method."""
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -14,6 +16,7 @@ from pinjoint.documents.models import parse
 from pinjoint.methods.displacements import DisplacementTables
 from pinjoint.systems.statics.displacement_method import MOST, Solution, solve
 from pinjoint.systems.statics.equations import Structure
+from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.theory import linear
 from pinjoint.systems.statics.unknowns import MethodError
 from tests.benchmarks.models import lattice
@@ -36,8 +39,12 @@ def checked(made: Model, within: float = 1e-10) -> Solution:
     if len(whole.end_moment) and theory.diagrams:
         assert np.abs(whole.bending_moment - theory.diagrams["bending_moment"]).max() <= within * size
     at = tuple(np.array([unknown.place for unknown in found.unknowns]).T)
-    springs = np.diag(spring_stiffness(made)[at])  # hold joints, too
-    columns = np.array([in_support_axes(made, unit.reaction)[at] for unit in found.units]).T + springs
+    stiff = spring_stiffness(made)  # springs hold joints, too
+    columns = np.array([in_support_axes(made, unit.reaction)[at] for unit in found.units]).T + np.diag(
+        stiff[at]
+    )
+    moved = [in_support_axes(made, np.column_stack([one.displacement, one.rotation])) for one in found.units]
+    springs = np.einsum("ipa,pa,jpa->ij", moved, stiff, moved)
     assert np.abs(columns - found.stiffness).max() <= 1e-12 * np.abs(found.stiffness).max()
     shares = [[found.shares(i, j).sum() for j in range(count)] for i in range(count)]
     assert np.abs(shares + springs - found.stiffness).max() <= 1e-12 * np.abs(found.stiffness).max()
@@ -139,6 +146,41 @@ def test_a_bar_by_hand() -> None:
     assert found.stiffness == pytest.approx(np.diag([k, k]), rel=1e-12, abs=1e-9 * k)
     assert found.shares(0, 1) == pytest.approx([-k / 2.0, k / 2.0], rel=1e-12)
     assert found.displacement == pytest.approx([0.0, -10.0 / k], rel=1e-12, abs=1e-20)
+
+
+def test_a_portal_of_inextensible_members_has_three_unknowns() -> None:
+    """Slope deflection: 24EI/h³ of the sway, 6EI/h² between it and the joints, 4EI/h + 4EI/L of these, 2EI/L between."""
+    h, span, q = 4.0, 6.0, 10.0
+    particles = {"A": (0.0, 0.0, CLAMPED), "B": (0.0, h, {}), "C": (span, h, {}), "D": (span, 0.0, CLAMPED)}
+    rods = {"A B": {}, "B C": {"distributed_force": [0.0, -q]}, "C D": {}}
+    source = frame(particles, {name: facts | {"inextensible": True} for name, facts in rods.items()})
+    made = models.load(source | {"loads": [{"on": "B", "force": [12.0, 0.0]}]})
+    found = checked(made)
+    assert [unknown.name for unknown in found.unknowns] == ["B.x", "B.rotation", "C.rotation"]
+    joint, lever = 4.0 * EI / h + 4.0 * EI / span, 6.0 * EI / h**2
+    matrix = [
+        [24.0 * EI / h**3, lever, lever],
+        [lever, joint, 2.0 * EI / span],
+        [lever, 2.0 * EI / span, joint],
+    ]
+    assert found.stiffness == pytest.approx(np.array(matrix), rel=1e-12)
+    assert found.load == pytest.approx([12.0, -q * span**2 / 12.0, q * span**2 / 12.0], rel=1e-12)
+    assert found.shares(0, 0) == pytest.approx([12.0 * EI / h**3, 0.0, 12.0 * EI / h**3], rel=1e-12)
+
+
+@given(SEEDS)
+def test_random_frames_of_some_inextensible_members(seed: int) -> None:
+    document, lot = random_frame(seed), np.random.default_rng(seed)
+    for member in document["rods"]:
+        member["inextensible"] = bool(lot.random() < 0.3)
+    made = parse(document)
+    try:
+        linear(made)
+    except NoEquilibrium as reason:  # inextensible members that hold each other
+        with pytest.raises(MethodError, match=re.escape(str(reason)[:40])):
+            solve(made)
+        return
+    checked(made, within=1e-9)
 
 
 def test_both_methods_give_the_same_forces_by_script() -> None:
