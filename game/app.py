@@ -41,6 +41,7 @@ from pinjoint.scripts.script import Script
 from pinjoint.session import Session
 from pinjoint.systems.base import System
 from pinjoint.systems.edit.hover import Hover
+from pinjoint.systems.input.actions import LIVE
 from pinjoint.systems.input.pygame_input import PygameInput
 from pinjoint.systems.render.backends.pygame_canvas import encoded
 from pinjoint.systems.render.backends.raster import load_raster
@@ -347,7 +348,7 @@ class App:
         view, shown = self.session.view, dict[str, str]()
         if self.session.footer is None:
             shown = {"language": language(), "convention": view.convention}
-        if self.session.footer is None and self.session.course is None:  # lessons name the usual units
+        if self.session.footer is None and self.session.course is None and self.session.scene in LIVE:
             shown["units"] = units_on_screen()
         return {"theme": view.theme, **shown}
 

@@ -71,10 +71,11 @@ class Readiness:
 class Gesture:
     """One drag, or one use of a tool. Pixels are where the pointer is.
 
-    hint: the next possible step, for the status line.
+    hint: the next possible step, for the status line. free: not in steps, as long as Shift is held.
     """
 
     hint = marked("let go to finish     Esc cancel")
+    free = False
 
     def move(self, context: Context, pixel: Vector) -> None:
         """The pointer moved to a pixel."""

@@ -16,6 +16,7 @@ from pinjoint.components.language import listed, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import supported
 from pinjoint.components.rod import nodes, rigid_joints
+from pinjoint.components.units import USUAL, shown_in
 from pinjoint.components.view import THESIS, Cut
 from pinjoint.figures import diagram_titles, figure, in_a_row, printed, signs
 from pinjoint.methods import displacement_words, index, words
@@ -50,6 +51,7 @@ _BESIDE = 26  # rows of a table that stands beside others
 _APART = ",\u2003"  # between formulas in a line
 
 
+@shown_in(USUAL)
 def report(solved: Tables, convention: str) -> bytes:
     """The report of a solution as the contents of a PDF file."""
     title = _title(solved.model)

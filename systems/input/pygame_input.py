@@ -152,9 +152,10 @@ class PygameInput(System):
                 self._dragging = True
                 frame.pressed.append((button.replace("click", "drag"), start))
             if self._dragging:
-                if frame.pressed and frame.pressed[-1][0] == "drag to":
+                if frame.pressed and frame.pressed[-1][0].endswith("drag to"):
                     frame.pressed.pop()  # only the last place of a frame counts
-                frame.pressed.append(("drag to", end))
+                held = "shift+" if pygame.key.get_mods() & pygame.KMOD_SHIFT else ""
+                frame.pressed.append((f"{held}drag to", end))
 
     def _release(self, frame: Any) -> None:
         """The left button is up again: the end of a drag, or a click."""

@@ -182,3 +182,13 @@ def test_units_hold_for_a_while() -> None:
     with shown_in("m kN mm"):
         assert units_on_screen() == "m kN mm"
     assert units_on_screen() == USUAL
+
+
+def test_the_methods_of_courses_keep_one_set_of_units() -> None:
+    session = Session.open("hyperstatic")
+    show_in("N mm")
+    session.press("k")
+    assert units_on_screen() == USUAL
+    assert any("kN" in text for text in texts(session))
+    session.press("escape")
+    assert units_on_screen() == "N mm"

@@ -79,7 +79,6 @@ EDITS: dict[str, Edit] = {
     "rod": _new_rod,
     "no rod": lambda s, lot, at, rod: s.model.delete([rod]) if lot.random() < 0.3 else None,
     "stiffness": lambda s, lot, at, rod: setattr(rod, "stiffness", rod.stiffness * lot.uniform(0.5, 2.0)),
-    "spring": lambda s, lot, at, rod: setattr(rod, "end_springs", (0.0, float(lot.uniform(50.0, 5000.0)))),
     "hinge": lambda s, lot, at, rod: setattr(rod, "hinged", (lot.random() < 0.3, lot.random() < 0.3)),
     "along": lambda s, lot, at, rod: setattr(rod, "distributed_force", (0.0, lot.uniform(-20.0, 5.0))),
     "warmth": lambda s, lot, at, rod: setattr(rod, "temperature_change", lot.uniform(-20.0, 40.0)),
@@ -214,6 +213,9 @@ def _plain(model: Model, factor: float) -> dict[str, Any]:
             "moment": moment[row],
             "fixed": particles.fixed[row].tolist(),
             "fixed_rotation": bool(particles.fixed_rotation[row]),
+            "support_springs": particles.support_springs[row],
+            "rotation_spring": float(particles.rotation_spring[row]),
+            "support_angle": float(particles.support_angle[row]),
             "displacement": settled[row],
             "rotation": turned[row],
         }
@@ -224,6 +226,7 @@ def _plain(model: Model, factor: float) -> dict[str, Any]:
         {name: float(getattr(rods, name)[row]) for name in (*names, "temperature_gradient")}
         | {"name": str(row), "between": [str(end) for end in rods.between[row].tolist()]}
         | {"hinged": rods.hinged[row].tolist(), "end_springs": rods.end_springs[row].tolist()}
+        | {"inextensible": bool(rods.inextensible[row])}
         | {"distributed_force": factor * rods.distributed_force[row]}
         for row in range(rods.count)
     ]

@@ -144,9 +144,16 @@ def _arrow_at(context: Context, pixel: Vector) -> Particle | Rod | None:
 action("drag to add", "ctrl+drag", "add all in a box to the selection")(
     lambda context, pixel: setattr(context, "gesture", BoxSelect(context, pixel, adding=True))
 )
-action("drag to", "drag to", where=IN_LESSONS, while_drawing=True)(
-    lambda context, pixel: context.gesture and context.gesture.move(context, pixel)
-)
+
+
+def _drag_to(free: bool, context: Context, pixel: Vector) -> None:
+    if context.gesture is not None:
+        context.gesture.free = free
+        context.gesture.move(context, pixel)
+
+
+action("drag to", "drag to", where=IN_LESSONS, while_drawing=True)(partial(_drag_to, False))
+action("drag freely to", "shift+drag to", where=IN_LESSONS, while_drawing=True)(partial(_drag_to, True))
 
 
 @action("drop", "drop", where=IN_LESSONS, while_drawing=True)

@@ -114,7 +114,7 @@ class MoveArrow(Placing):
         self._element, self._from = element, pixel
         self._field = Particle.force if isinstance(element, Particle) else Rod.distributed_force
         self._force = getattr(element, self._field.name)
-        self.hint = joined([tr(Placing.hint), scale_said(context, self._field)], BETWEEN)
+        self.hint = joined([tr(Placing.hint), tr("Shift: free"), scale_said(context, self._field)], BETWEEN)
         rows = [element.row] if isinstance(element, Particle) else [end.row for end in element.ends]
         middle = context.view.camera.to_pixels(drawn_positions(context.model)[rows].mean(axis=0))
         out = np.subtract(pixel, middle) * [1.0, -1.0]
@@ -125,7 +125,8 @@ class MoveArrow(Placing):
     def place(self, context: Context, pixel: Vector) -> str:
         scale = arrow_scale(context.model, context.view, self._field.name)
         points = np.subtract(pixel, self._from) * [1.0, -1.0] / context.view.pixel_ratio
-        added = self._way * STEP * scale * np.round(points / STEP)
+        step = 1.0 if self.free else STEP
+        added = self._way * step * scale * np.round(points / step)
         value = tuple(float(f"{part:.12g}") for part in np.add(self._force, added).tolist())
         context.model.assign([self._element], self._field.name, [value])
         return tr(

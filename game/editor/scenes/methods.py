@@ -16,6 +16,7 @@ from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.components.settings import HUBS, Settings
 from pinjoint.components.slider import SliderStack
+from pinjoint.components.units import USUAL, show_in, units_on_screen
 from pinjoint.components.view import BETWEEN, Page, Status, View
 from pinjoint.editor.context import Context, Scene
 from pinjoint.editor.sliders import scale_control
@@ -83,6 +84,8 @@ class Method(Scene):
 
     def enter(self, context: Context) -> None:
         self._problem, self._mechanism, self._page_of = "", None, None
+        self._units = units_on_screen()
+        show_in(USUAL)  # of which their equations are
         self.work(context, tr("Solving the structure"), partial(self._begin, context))
 
     def _begin(self, context: Context) -> None:
@@ -105,6 +108,7 @@ class Method(Scene):
 
     def exit(self, context: Context) -> None:
         self.shown_guide = self._mechanism = self._work = None
+        show_in(self._units)
 
     @property
     def guide(self) -> Guide | None:

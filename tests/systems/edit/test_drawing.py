@@ -216,6 +216,8 @@ def test_the_arrow_of_a_load_is_dragged_in_steps_by_its_scale(two: Session) -> N
     two.press("drag", tail)
     two.press("drag to", (tail[0] + 2.0, tail[1] + 18.0))
     assert two.particles["particle 1"].force == (0.0, pytest.approx(up * 95.0 / 75.0))
+    two.press("shift+drag to", (tail[0], tail[1] + 33.0))
+    assert two.particles["particle 1"].force == (0.0, pytest.approx(up * 108.0 / 75.0))
     two.press("drag to", (tail[0], tail[1] + 31.0))
     two.press("drop", (tail[0], tail[1] + 31.0))
     assert two.particles["particle 1"].force == (0.0, pytest.approx(up * 105.0 / 75.0))

@@ -30,7 +30,7 @@ from tests.properties.soundness import contents
 from tests.reference.hits import hits_in
 
 CASES = [(scene, action, binding) for action, binding in ACTIONS.bound() for scene in binding.scenes]
-FOLLOWING = {"drag to", "drop"}  # are part of a drag
+FOLLOWING = {"drag to", "shift+drag to", "drop"}  # are part of a drag
 
 
 @pytest.fixture(autouse=True)
