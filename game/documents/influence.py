@@ -16,7 +16,7 @@ from pinjoint.components import written
 from pinjoint.components.bent import Axes, Parts
 from pinjoint.components.field import ENDS, Column
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import tr
+from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import supported
 from pinjoint.components.rod import Rod, bends
@@ -118,9 +118,8 @@ class Influence:
             for _, (value, rod, x) in self.extremes(model)
         )
         title = tr(
-            "Influence line: {quantity} of {name} for 1 kN downwards, from {least} to {most} {unit}",
-            quantity=tr(QUANTITIES[self.quantity][2]),
-            name=self.name,
+            "Influence line: {quantity} for 1 kN downwards, from {least} to {most} {unit}",
+            quantity=self._said(model),
             least=least,
             most=most,
             unit=QUANTITIES[self.quantity][1],
@@ -128,22 +127,31 @@ class Influence:
         drawn = drawn_share(model) / max(float(np.abs(moved[:, :2]).max()), 1e-300) * moved
         return Shape(title, drawn[:, :2], None, drawn[:, 2] if bends(model) else None, "", parts, swings=False)
 
+    def _said(self, model: Model) -> str:
+        """The quantity as a person calls it: "bending moment at the start of AB", "reaction y of A"."""
+        table, _, title = QUANTITIES[self.quantity]
+        of = model.tables[table].names[self.row]
+        if self.quantity == "bending_moment":
+            return tr("{quantity} at the {end} of {rod}", quantity=tr(title), end=tr(ENDS[self.axis]), rod=of)
+        along = self.quantity in ("reaction", "displacement")
+        quantity = joined([tr(title), AXES[self.axis] if along else ""])
+        return tr("{quantity} of {element}", quantity=quantity, element=of)
+
 
 def lines_of(model: Model, element: Handle) -> list[Shape]:
-    """The lines of all quantities of a rod or particle. Raises NoShape."""
+    """The lines of all quantities of a rod or particle, without those that are nothing everywhere. Raises NoShape."""
     if isinstance(element, Rod):
         rigid = (model.rods.turning_shares[element.row] > 0.0).tolist()
-        names = [
-            element.name,
-            *(f"{element.name}.{end}" for end, stiff in zip(ENDS, rigid, strict=True) if stiff),
-        ]
-        names += [f"{element.name}.shear"] * any(rigid)
+        names = [f"{element.name}.{end}" for end, stiff in zip(ENDS, rigid, strict=True) if stiff]
+        names += [*[f"{element.name}.shear"] * any(rigid), element.name]
     else:
         name = model.particles.names[element.row]
         turns = bends(model) and model.particles.inertia[element.row] > 0.0
         names = [f"{name}.{axis}" for axis in AXES[: 2 + turns]]
     try:
-        return [Influence.of(model, name).shape(model) for name in names]
+        lines = [Influence.of(model, name) for name in names]
+        some = [line for line in lines if np.abs(line.along(model)).max() > written.ROUNDING]
+        return [line.shape(model) for line in some or lines]
     except (MethodError, NoEquilibrium) as reason:
         raise NoShape(str(reason)) from None
 
