@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from pinjoint.components.commands import Assign
-from pinjoint.components.field import MADE
+from pinjoint.components.field import MADE, Column
 from pinjoint.components.model import Model
 from pinjoint.components.particle import in_support_axes, of_rigid_supports, supported, turned_supports
 from pinjoint.components.written import ROUNDING
@@ -23,6 +24,16 @@ _ACTING = {  # what loads, moves or strains a structure, by table
     "rods": ("distributed_force", "plastic_strain", "temperature_change", "temperature_gradient"),
 }
 _STIFF = 1e9  # times the bending stiffness, so that what is drawn stays straight
+
+
+@dataclass(frozen=True)
+class _FirstOrder:
+    """Lets a copy show its state as first-order theory has it: forces act on the original geometry."""
+
+    columns: Mapping[str, Column] = field(default_factory=dict)
+    revision: int = 0
+    first_order: bool = True
+    share: float = 1.0
 
 
 def elastic_copy(model: Model) -> Model:
@@ -97,6 +108,9 @@ def still(copy: Model, whole: Model, state: SetState, *, moved: bool = False) ->
     moved: with its displacements; else undeformed.
     """
     rods = copy.rods
+    if moved:
+        copy.settings.original_diagrams = False
+        copy.show(_FirstOrder())
     here = [whole.rods[name].row for name in rods.names]
     copy.writable("particles.displacement")[...] = state.displacement if moved else 0.0
     copy.writable("particles.rotation")[...] = state.rotation if moved else 0.0

@@ -227,3 +227,22 @@ def test_nothing_in_the_report_stands_beyond_the_margins(name: str, layout: Any,
     with spoken(language):
         for row in rows_in(contents(solved(name), "textbook", layout)):
             assert row.wrap(WIDTH, 1e6)[0] <= WIDTH + 0.5
+
+
+def test_diagrams_of_displaced_sets_are_those_of_first_order() -> None:
+    """Axial forces do not bend what is drawn displaced, by a unit above all."""
+    session = Session.open("portal")
+    session.model.assign(list(session.rods), "inextensible", True)
+    session.resize(1280, 800)
+    for key in ("ctrl+k", "k", "k", "k", "n"):
+        session.press(key)
+    session.frame(0.0)
+    shown = said(session)
+    assert "52.50 kN·m" in shown
+    assert {text for text in shown if re.fullmatch(r"\d{4,6}", text)} <= {
+        "3000",
+        "4500",
+        "6000",
+        "12000",
+        "24000",
+    }

@@ -88,22 +88,20 @@ class Occupancy:
             np.full(len(first), NOBODY) if of is None else self.parts.code((of[0], 0)) + of[1]
             for first, _, _, of in added
         ]
-        near, (left, top) = _are_near(start, end), (self.viewport.left, self.viewport.top)
+        near, (left, top), code = _are_near(start, end), self.viewport.corners[0], np.concatenate(codes)
         if not near.all():
-            start, end, strength, codes = start[near], end[near], strength[near], [np.concatenate(codes)[near]]
-        x, y = (start[:, 0] - left) / self.cell, (start[:, 1] - top) / self.cell
-        dx, dy = (end[:, 0] - start[:, 0]) / self.cell, (end[:, 1] - start[:, 1]) / self.cell
+            start, end, strength, code = start[near], end[near], strength[near], code[near]
+        dx, dy = (end - start).T / self.cell
         count = np.maximum(np.abs(dx), np.abs(dy)).astype(np.intp) + 2
-        which = np.repeat(np.arange(len(start)), count)
-        step = np.arange(len(which)) - (np.cumsum(count) - count)[which]
-        scale = 1.0 / (count - 1)
-        columns = (x[which] + step * (dx * scale)[which]).astype(np.intp)
-        rows = (y[which] + step * (dy * scale)[which]).astype(np.intp)
+        step, scale = ranges(np.zeros_like(count), count), 1.0 / (count - 1)
+        columns, rows = (
+            (np.repeat(first / self.cell, count) + step * np.repeat(way * scale, count)).astype(np.intp)
+            for first, way in ((start[:, 0] - left, dx), (start[:, 1] - top, dy))
+        )
         height, width = self._lined.shape
         ok = (rows >= 0) & (columns >= 0) & (rows < height) & (columns < width)
-        cells, which = (rows * width + columns)[ok], which[ok]
-        self._lined.ravel()[cells] = strength[which]
-        code = np.concatenate(codes)[which]
+        cells, code = (rows * width + columns)[ok], np.repeat(code, count)[ok]
+        self._lined.ravel()[cells] = np.repeat(strength, count)[ok]
         self._owner.ravel()[cells[code != NOBODY]] = code[code != NOBODY]
 
     def crossed(self, left: float, top: float, width: float, height: float) -> int:
