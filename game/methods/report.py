@@ -465,9 +465,11 @@ def _formulas(solved: ForceTables, *, pulls: bool) -> Iterator[str]:
     work, bends = solved.solution.work, solved.bends
     more = ["Σ n₁ ΔL"] * bool(work.axial.of_free.any()) + ["∫ m₁ κ dx"] * bool(work.bending.of_free.any())
     more += ["(− Σ r₁ c)"] * bool(len(work.settled))
-    yield from words.formulas(bends, index(1), pulls=pulls, more=more)
+    springs = bool(work.supports.softness.any())
+    yield from words.formulas(bends, index(1), pulls=pulls, more=more, springs=springs)
     if len(solved.solution.unknowns) > 1:
-        yield f"δ₁₂ = δ₂₁ = {words.sums(bends, 'm₁ m₂', 'n₁ n₂', pulls=pulls)}"
+        both = words.sums(bends, "m₁ m₂", "n₁ n₂", pulls=pulls, more=["Σ r₁ r₂/k"] * springs)
+        yield f"δ₁₂ = δ₂₁ = {both}"
 
 
 def _balance(model: Model, state: SetState) -> Iterator[tuple[str, list[float]]]:

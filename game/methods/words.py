@@ -216,10 +216,13 @@ def explained(guide: ForceGuide) -> tuple[str, ...]:
     return (",  ".join([*formulas(tables.bends, index(number)), *mixed]), *tables.sums(number - 1))
 
 
-def formulas(bends: bool, i: str, *, pulls: bool = True, more: Sequence[str] = ()) -> tuple[str, str]:
-    """The sums of virtual work for one unknown, its index below; see `sums`."""
+def formulas(
+    bends: bool, i: str, *, pulls: bool = True, more: Sequence[str] = (), springs: bool = False
+) -> tuple[str, str]:
+    """The sums of virtual work for one unknown, its index below; see `sums`. springs: some supports are elastic."""
     gap = sums(bends, f"M₀ m{i}", f"N₀ n{i}", pulls=pulls, more=more)
-    return f"δ{i}₀ = {gap}", f"δ{i}{i} = {sums(bends, f'm{i}²', f'n{i}²', pulls=pulls)} > 0"
+    own = sums(bends, f"m{i}²", f"n{i}²", pulls=pulls, more=[f"Σ r{i}²/k"] * springs)
+    return f"δ{i}₀ = {gap}", f"δ{i}{i} = {own} > 0"
 
 
 def sums(bends: bool, moments: str, forces: str, *, pulls: bool = True, more: Sequence[str] = ()) -> str:
