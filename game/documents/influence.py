@@ -56,6 +56,8 @@ class Influence:
                     moving=moving,
                 ),
             )
+        if not model.rods.count:
+            raise MethodError("There are no rods, over which a force could move; draw some.")
         quantity, row, axis = _influenced(model, name)
         return cls(name, quantity, row, axis, influence_line(model, quantity, row, axis))
 

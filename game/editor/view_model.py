@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
-from decimal import DecimalException
 
 import numpy as np
 from numpy.typing import NDArray
@@ -249,7 +248,7 @@ def _preview(context: Context) -> Preview | None:
             return gesture.preview(context, context.view.pixel)
         at = context.view.camera.to_model(context.view.pixel)
         made = Preview("", at, at)  # while what is typed is no number yet, or none in such a unit
-        with suppress(DecimalException, FieldError):
+        with suppress(FieldError):
             made = gesture.preview(context, context.view.pixel) or made
         unit = "" if any(map(str.isalpha, gesture.typed)) else "°" if "@" in gesture.typed else gesture.unit[1]
         return replace(made, typed=f"{gesture.typed}| {unit}".rstrip(), problem=gesture.problem)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from decimal import DecimalException
 from typing import Any
 
 from pinjoint.components.field import FieldError
@@ -205,7 +204,7 @@ class Course:
         self.said = self.mood = ""
 
     def _given(self) -> Answer:
-        """The answer that stands there now. Raises DecimalException if it is no number, FieldError if in another unit."""
+        """The answer that stands there now. Raises FieldError if it is no number, or in a unit of another kind."""
         task = self.task
         if task.kind == CHOICES:
             return self.choice
@@ -225,9 +224,6 @@ class Course:
             return
         try:
             answer = self._given() if self.task.kind != UNTIL else None
-        except DecimalException:
-            self.mood, self.said = WRONG, tr("'{text}' is not a number; type one such as 2.5.", text=self.typed)
-            return
         except FieldError as error:
             self.mood, self.said = WRONG, tr("The answer {reason}.", reason=str(error))
             return

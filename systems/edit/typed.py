@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from decimal import DecimalException
 
-from pinjoint.components.field import Vector
+from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.units import inside
 
 BEGINS = frozenset("0123456789.,;-−+@<")  # what is typed with a tool in hand begins with one of these
@@ -19,9 +20,12 @@ _DIGITS = 14  # significant ones that are kept, so that 3 at 60° is 1.5 across
 def number(text: str, unit: str, otherwise: str) -> float:
     """The number that a text means, in a unit of the program; otherwise: the unit of one that has none.
 
-    Raises DecimalException if it is no number, and FieldError if its unit is of another kind.
+    Raises FieldError if it is no number, or its unit is of another kind.
     """
-    return float(inside(text.translate(_MEANS).strip(), unit, otherwise))
+    try:
+        return float(inside(text.translate(_MEANS).strip(), unit, otherwise))
+    except DecimalException:
+        raise FieldError("must be a number") from None
 
 
 def vector(text: str, unit: str, otherwise: str, pointed: Vector, along: Vector | None = None) -> Vector:

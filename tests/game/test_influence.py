@@ -107,6 +107,10 @@ def test_a_particle_and_a_mechanism() -> None:
     session.press("ctrl+i")
     assert session.view.shape is not None
     assert "displacement x of A" in session.view.shape.title
+    session = Session.open(frame({"A": (0.0, 0.0, {"fixed": [True, True]})}, {}))
+    session.select(session.particles["A"])
+    session.press("ctrl+i")
+    assert "There are no rods" in session.notice
     session = Session.open("pendulum")
     session.select(session.rods[0])
     session.press("ctrl+i")

@@ -209,7 +209,7 @@ def test_a_wrong_number_is_explained_and_typed_anew(session: Session) -> None:
         ("-30", "but not the sign"),
         ("-20", "Neither the sign nor the size"),
         ("1000", "too large"),
-        ("--", "not a number"),
+        ("--", "must be a number"),
     ):
         session.type(typed)
         session.press("return")

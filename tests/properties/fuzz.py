@@ -22,6 +22,7 @@ import numpy as np
 
 from pinjoint import Session
 from pinjoint.components.field import Vector
+from pinjoint.components.model import Model
 from pinjoint.components.view import drawn_positions
 from pinjoint.documents import library, models
 from pinjoint.documents.library import data_in
@@ -65,6 +66,7 @@ OFTEN = {  # keys that are pressed more often than others, so that every scene i
     "save": ("escape", "return", "return"),
     "load": ("escape", "escape", "down", "return", "return"),
     "force method": ("k", "k", "k", "k", "click", "click", "click", "x", "y", "i"),
+    "displacement method": (*"kkkkbn", "click", "click", "i"),
 }
 FRAMES = (0.0, 1.0 / 60.0, 1.0 / 60.0, 0.1)
 KINDS = {  # what `python -m tests.properties.fuzz` can try: modules with explore(first seed, count)
@@ -142,7 +144,8 @@ class Fuzz:
 
     def _place(self) -> Vector:
         """A pixel: mostly an element or near one."""
-        model, view = self.session.stages[0]
+        stages = [(shown, view) for shown, view in self.session.stages if isinstance(shown, Model)]
+        model, view = stages[0] if stages else (self.session.model, self.session.view)
         viewport = self.session.view.camera.viewport
         pixels = view.camera.to_pixels(drawn_positions(model)) if model.particles.count else np.empty((0, 2))
         near = pixels[np.isfinite(pixels).all(axis=1) & (np.abs(pixels) < 1e6).all(axis=1)]

