@@ -65,20 +65,18 @@ COMMANDS: dict[str, Command] = EXTENSIONS.commands
 COMMANDS |= {
     "open": Command(_of("window"), marked("open a model in the window; the word may be left out")),
     "run": Command(_of("run"), marked("compute a model without a window, and print the result")),
-    "verify": Command(
-        _of("verify"), marked("compare simulation with linear and exact theory; influence lines")
-    ),
+    "verify": Command(_of("verify"), marked("compare a run with both theories; influence lines")),
     "curve": Command(_of("curve"), marked("compute a load–displacement curve, through limit points")),
     "buckling": Command(_of("buckling"), marked("find buckling loads, modes and effective lengths")),
     "force-method": Command(
-        _of("force_method"), marked("solve a statically indeterminate structure by the force method")
+        _of("force_method"), marked("solve an indeterminate structure by the force method")
     ),
     "displacement-method": Command(
         _of("displacement_method"), marked("solve a truss or a frame by the displacement method")
     ),
-    "sheet": Command(_of("sheet"), marked("write a PDF with drawing, diagrams and tables of a structure")),
+    "sheet": Command(_of("sheet"), marked("write a PDF with drawing, diagrams and tables")),
     "sweep": Command(_of("sweep"), marked("compute many variants of a model")),
-    "plan": Command(_of("plan"), marked("list the systems that run in a scene, and why others do not")),
+    "plan": Command(_of("plan"), marked("list systems that run in a scene, and why others do not")),
     "render": Command(_of("render"), marked("draw a model, or its run, to a file")),
     "play": Command(_of("play"), marked("play a lesson or a recorded session")),
     "mods": Command(_of("mods"), marked("list and check mods (extensions), and write new ones")),

@@ -427,7 +427,7 @@ class Context:
 
     @clipboard.setter
     def clipboard(self, text: str) -> None:
-        self._clipboard = text
+        self._clipboard = str.__str__(text)  # also of what is told in a language
         if self.window is not None:
             self.window.copy(text)
 

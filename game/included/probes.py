@@ -364,7 +364,7 @@ def plugin(app: App) -> None:
     """Register the system, its keys, the panels and the command."""
     app.system(Sampling)
     app.panel(panels)
-    app.command("plot", run, marked("write or draw what a run does, against time or another quantity"))
+    app.command("plot", run, marked("write or draw what a run does, against time or other"))
     live = ("simulation", "pause", "statics")
     app.action("probes.plot", key="o", scenes=live, title=marked("plot the selection"), icon=ICON)(plot_next)
     app.action("probes.curve", key="ctrl+u", scenes=live[1:], title=marked("plot load against displacement"))(

@@ -58,8 +58,9 @@ def captions(guide: DisplacementGuide) -> list[Caption]:
     for i in range(min(there, 2)):
         shown[i] = (*shown[i], tr("the real load"))
     if there > 2:
-        alone = [f"{unknown(guide.tables, guide.acting)} = 1"]
-        shown[2] = (*shown[2], *([tr("the unknowns below")] if guide.part == guide.parts else alone))
+        whole = guide.part == guide.parts
+        alone = tr("the unknowns below") if whole else f"{unknown(guide.tables, guide.acting)} = 1"
+        shown[2] = (*shown[2], alone)
     return shown
 
 

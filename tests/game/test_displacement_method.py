@@ -22,6 +22,7 @@ from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.statics.displacement_method import solve
 from tests.game.test_force_method_report import number, rows_in, written_in
 from tests.game.test_force_method_scene import said
+from tests.systems.render.frame_models import frame
 
 
 def guide_of(session: Session) -> DisplacementGuide:
@@ -63,6 +64,17 @@ def test_six_parts_from_pause_to_pause() -> None:
     session.press("k")
     assert session.scene == "pause"
     assert models.document(session.model) == before
+
+
+def test_a_structure_without_unknowns_is_gone_through_to_its_end() -> None:
+    clamped = {"fixed": [True, True], "fixed_rotation": True}
+    session = Session.open(frame({"A": (0.0, 0.0, clamped), "B": (4.0, 0.0, clamped)}, {"A B": {}}))
+    session.press("ctrl+k")
+    for _ in range(4):
+        session.press("k")
+        session.frame(0.02)
+        assert compose_all(session.stages, load_theme("light"))
+    assert session.scene == "pause"
 
 
 def test_b_goes_back_and_n_to_the_equations() -> None:

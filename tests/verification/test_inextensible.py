@@ -12,7 +12,6 @@ from pinjoint import Session
 from pinjoint.components.field import FieldError
 from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
-from pinjoint.systems.statics import displacement_method
 from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.force_method import solve
@@ -198,8 +197,3 @@ def test_menus_mark_rods_and_pictures_show_it() -> None:
     session.press("q")
     assert session.scene == "statics"
     assert math.isfinite(session.rods["AB"].axial_force)
-
-
-def test_the_displacement_method_refuses_them_by_name() -> None:
-    with pytest.raises(MethodError, match="but rod AB counts as inextensible"):
-        displacement_method.solve(portal())

@@ -17,7 +17,7 @@ from pinjoint.systems.render.marks import Picture, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.statics.theory import Indeterminacy
-from tests.golden.test_all_values import missing, told
+from tests.golden.test_all_values import FEW, missing, told
 from tests.reference import frame_theory
 from tests.verification.test_frame_theory import SEEDS, random_frame
 
@@ -114,7 +114,8 @@ def test_picture_table_and_csv_say_what_an_independent_solver_finds(seed: int) -
             assert isinstance(model, Model)
             picture = compose(model, view, LIGHT)
             by_rod, _ = told(picture, model)
-            assert missing(model, view.quantity, by_rod) == []
+            if model.rods.count <= FEW:  # more values, with a load on every member, may be left to the table
+                assert missing(model, view.quantity, by_rod) == []
             for row, sizes in by_rod.items():
                 wanted = values_of(
                     found, view.quantity, model.rods.names[row], float(model.rods.original_length[row])

@@ -60,6 +60,7 @@ _HATCH = 7.0  # points between lines across
 _DASH = 4.0  # points, of the outlines of what is no equilibrium
 _NOTHING = 1e-3  # of the largest value: what is not told
 _ALIKE = 5e-3  # of the largest value: what counts as the same
+_READ_ALIKE = 1e-3  # of a moment, which a joint passes on: one is told
 _GREAT = 0.5  # of the largest value: what is told before all else
 _ZERO = 2.5  # points, radius of the mark of a zero point
 _INSIDE = 0.02  # share of a rod, from which on a zero point or an extreme is not at its end
@@ -472,7 +473,7 @@ def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:
     middle = middle[~_continued(sheet, diagram.rows[middle], constant, largest)]
     told[same] = False
     if quantity == MOMENT:
-        told &= ~_repeated(sheet, diagram, ends, largest)
+        told &= ~_repeated(sheet, diagram, ends)
     rod, end = np.nonzero(told)
     return (
         np.concatenate([rod, which, every[middle]]),
@@ -492,7 +493,7 @@ def _continued(sheet: Sheet, rows: Rows, constant: Values, largest: float) -> Tr
     return same
 
 
-def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values, largest: float) -> Truths:
+def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values) -> Truths:
     """Ends of rods whose moment another end at the same joint tells, or that are no extreme of a member, (n, 2)."""
     rows, repeated = diagram.rows, np.zeros(ends.shape, dtype=bool)
     joints = sheet.ends[rows]
@@ -505,7 +506,8 @@ def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values, largest: float) -> 
     shared = shared[np.argsort(joints.ravel()[shared], kind="stable")]
     pairs = np.flatnonzero(np.diff(joints.ravel()[shared]) == 0)
     one, other = shared[pairs], shared[pairs + 1]
-    same = np.abs(np.abs(ends.ravel()[one]) - np.abs(ends.ravel()[other])) <= _ALIKE * largest
+    first, second = np.abs(ends.ravel()[one]), np.abs(ends.ravel()[other])
+    same = np.abs(first - second) <= _READ_ALIKE * np.maximum(first, second)
     one, other = one[same], other[same]
     way, slope = way.reshape(-1, 2), slope.ravel()
     straight = (way[one] * way[other]).sum(axis=1) < -_STRAIGHT

@@ -117,7 +117,7 @@ def test_hostile_arguments_are_refused_in_one_short_line(
         ('{"resize": [1e308, 1e308, 1]}', "give sides from 1 to 65536"),
         ('{"resize": [0.5, 0.5, 1]}', "give sides from 1 to 65536"),
         ('{"window": [1e9, 1e9]}', "give sides from 1 to 65536"),
-        ('{"' + "x" * 9999 + '": 1}', "there is no 'xxx"),
+        ('{"' + "x" * 9999 + '": 1}', "there is no key 'xxx"),
     ],
     ids=lambda given: given[:20],
 )

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from pinjoint import Session
+from pinjoint.components.language import tr
 from pinjoint.documents.document import document
 
 
@@ -58,3 +59,9 @@ def test_pasting_what_is_no_model_is_refused(triangle: Session) -> None:
     triangle.press("ctrl+v")
     assert triangle.notice.startswith("The clipboard holds no particles or rods")
     assert triangle.particles.count == 3
+
+
+def test_a_text_that_is_told_in_a_language_can_be_pasted_and_is_refused(triangle: Session) -> None:
+    triangle.clipboard = tr("There is nothing to undo.")
+    triangle.press("ctrl+v")
+    assert triangle.notice.startswith("The clipboard holds no particles or rods")
