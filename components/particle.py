@@ -191,8 +191,8 @@ def supported(world: Store) -> NDArray[np.bool_]:
 def turned_supports(world: Store) -> NDArray[np.bool_]:
     """Which particles have supports that do not act along x and y, shape (particles,)."""
     particles = world.tables["particles"]
-    found: NDArray[np.bool_] = (particles.support_angle != 0.0) & supported(world)[:, :2].any(axis=1)
-    return found
+    found: NDArray[np.bool_] = particles.support_angle != 0.0
+    return found & supported(world)[:, :2].any(axis=1) if found.any() else found
 
 
 def in_support_axes(world: Store, field: NDArray[np.float64], *, back: bool = False) -> NDArray[np.float64]:
@@ -219,7 +219,8 @@ def of_rigid_supports(world: Store, field: NDArray[np.float64]) -> NDArray[np.fl
 
 def is_sprung(world: Store) -> bool:
     """True if some support is elastic."""
-    return bool(spring_stiffness(world).any())
+    particles = world.tables["particles"]
+    return bool(particles.support_springs.any() or particles.rotation_spring.any())
 
 
 def spring_stiffness(world: Store) -> NDArray[np.float64]:

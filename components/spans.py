@@ -59,7 +59,7 @@ class Spans(NamedTuple):
     def of(cls, world: World) -> Spans:
         """Those of a model, along x and y; places beyond the end of a rod count as its end."""
         rods, loads = world.tables["rods"], world.tables["span_loads"]
-        own = np.flatnonzero(rods.distributed_force.any(axis=1))
+        own = _pressed(rods.distributed_force)
         nothing, none, force = np.zeros((len(own), 2)), np.zeros(len(own)), rods.distributed_force[own]
         found = cls(own, none, none + 1.0, nothing, none, force, force, np.full(len(own), -1))
         if not loads.count:
@@ -101,7 +101,7 @@ class Kinks(NamedTuple):
         """Those of a model, of so much of its loads."""
         rods = world.tables["rods"]
         if not world.tables["span_loads"].count:  # of which nothing needs to be sorted: a third of the time
-            own = np.flatnonzero(rods.distributed_force.any(axis=1))
+            own = _pressed(rods.distributed_force)
             size = np.zeros((len(own), 3))
             size[:, :2] = share * rods.distributed_force[own] * rods.rest_length[own, None]
             return cls(own, np.zeros(len(own)), np.zeros_like(own), size, np.full(len(own), -1))
@@ -387,4 +387,10 @@ def values(polynomials: Column, shares: Column) -> Column:
 def derivative(polynomials: Column) -> Column:
     """Of polynomials (n, d), by ξ, (n, d − 1)."""
     found: Column = polynomials[:, 1:] * np.arange(1.0, polynomials.shape[1])
+    return found
+
+
+def _pressed(force: Column) -> Rows:
+    """Which rods bear forces distributed along them, of vectors (rods, 2)."""
+    found: Rows = np.flatnonzero((force[:, 0] != 0.0) | (force[:, 1] != 0.0))
     return found

@@ -138,7 +138,8 @@ def _draw_springs(sheet: Sheet, rows: Rows) -> None:
 def _stand(sheet: Sheet, symbol: str, side: int, of: Rows) -> Points:
     """A symbol at a side of some particles, turned as their supports are; returns the middles of the symbols."""
     size, particles = SUPPORT_DEPTH * sheet.unit, sheet.model.particles
-    coiled = (particles.rotation_spring[of] > 0.0) & rigid_joints(sheet.model)[of]
+    coiled = particles.rotation_spring[of] > 0.0
+    coiled = coiled & rigid_joints(sheet.model)[of] if coiled.any() else coiled
     rim = np.where(coiled, _SPIRAL * sheet.unit, sheet.radii[of] - sheet.unit)
     angle = np.where(turned_supports(sheet.model)[of], particles.support_angle[of], 0.0)
     outward = turned(np.broadcast_to(DIRECTIONS[side], (len(of), 2)), angle)  # y is down
