@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -97,7 +97,7 @@ def write(
 def _made(
     stages: Sequence[tuple[Model, View]], suffix: str, size: Size, theme: str, background: Background
 ) -> bytes:
-    colours, suffix = load_theme(theme), suffix.lower()
+    colours = load_theme(theme)
     if background == "white":
         colours = replace(colours, background=_WHITE)
     pictures = compose_all(stages, colours)
@@ -107,19 +107,27 @@ def _made(
     elif len(stages) > 1:  # which leave the place of the toolbar free
         pictures = [Picture(Viewport(0, 0, *size), colours.background), *pictures]
         paths = [paths[0], *paths]
-    title = stages[0][0].title or "Pinjoint"
+    named, title = list(zip(pictures, paths, strict=True)), stages[0][0].title or "Pinjoint"
+    return _as_file(named, size, suffix, title, clear=background == "transparent")
+
+
+def _as_file(
+    named: Sequence[tuple[Picture, Callable[[Owner], str]]],
+    size: Size,
+    suffix: str,
+    title: str,
+    *,
+    clear: bool = False,
+) -> bytes:
+    """Pictures, each with what names the owners of its marks, as the content of a file with that suffix."""
+    pictures, suffix = [picture for picture, _ in named], suffix.lower()
     if suffix == ".svg":
-        return as_svg(list(zip(pictures, paths, strict=True)), size, title)
+        return as_svg(named, size, title)
     if suffix == ".pdf":
         return as_pdf(pictures, size, title)
     if suffix not in _IMAGES:
         endings = ", ".join((*_IMAGES, ".svg", ".pdf"))
         raise WrongValue("{file}: choose a file that ends with one of {endings}.", file=suffix, endings=endings)
-    return _as_image(pictures, size, suffix, clear=background == "transparent")
-
-
-def _as_image(pictures: Sequence[Picture], size: Size, suffix: str, *, clear: bool) -> bytes:
-    """Pictures as pixels."""
     from pinjoint.systems.render.backends.pygame_canvas import as_image  # pygame takes a while to import
 
     return as_image(pictures, size, suffix, clear=clear)
@@ -155,11 +163,4 @@ def plot_picture(plot: Plot, path: Path, theme: str = "light") -> None:
     box = Rectangle(16.0 * unit, 8.0 * unit, size[0] - 32.0 * unit, size[1] - 16.0 * unit)
     marks = draw_plot(plot, box, colours, unit, None)
     picture = Picture(Viewport(0, 0, *size), colours.background, marks)
-    suffix = path.suffix.lower()
-    if suffix == ".svg":
-        made = as_svg([(picture, lambda owner: "")], size, plot.x_title)
-    elif suffix == ".pdf":
-        made = as_pdf([picture], size, plot.x_title)
-    else:
-        made = _as_image([picture], size, ".png", clear=False)
-    models.replace(path, made)
+    models.replace(path, _as_file([(picture, lambda owner: "")], size, path.suffix, plot.x_title))

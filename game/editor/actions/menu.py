@@ -21,7 +21,7 @@ from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import share_at, weigh_along
 from pinjoint.systems.edit.supports import SPRING, SUPPORTS, Held, held, is_elastic, put_on_springs, support
 from pinjoint.systems.forms.properties import heading
-from pinjoint.systems.input.actions import ACTIONS, FORCE_METHOD, MENU, actions_of
+from pinjoint.systems.input.actions import ACTIONS, FORCE_METHOD, MENU, Condition, Perform, actions_of
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.menu import entry_beside, pointed_at
 
@@ -140,32 +140,28 @@ def _clear_span_loads(context: Context, pixel: Vector) -> None:
     context.model.delete([load for load in context.model.span_loads if load.rod in rods])
 
 
-@offer(
-    "toggle cable",
-    "",
-    "cable: tension only",
-    pressed=lambda context: {rod.tension_only for rod in context.model.tagged(Selected, Rod)} == {True},
-)
-def _toggle_cable(context: Context, pixel: Vector) -> None:
-    """Let the selected rods bear tension only, or if all do so, compression as well."""
-    rods = _selected(context)
-    cable = not all(rod.tension_only for rod in rods)
-    context.model.assign(rods, "tension_only", cable)
-    tell(context, tr("tension only, as a cable") if cable else tr("tension and compression"), *rods)
+def _toggle(field: str, on: str, off: str) -> Perform:
+    """What gives all selected rods a property or, if all have it, takes it away, and says so."""
+
+    def toggle(context: Context, pixel: Vector) -> None:
+        rods = _selected(context)
+        given = not all(getattr(rod, field) for rod in rods)
+        context.model.assign(rods, field, given)
+        tell(context, tr(on) if given else tr(off), *rods)
+
+    return toggle
 
 
-@offer(
-    "toggle inextensible",
-    "",
-    "inextensible in first-order theory",
-    pressed=lambda context: {rod.inextensible for rod in context.model.tagged(Selected, Rod)} == {True},
+def _all_are(field: str) -> Condition:
+    return lambda context: {getattr(rod, field) for rod in context.model.tagged(Selected, Rod)} == {True}
+
+
+offer("toggle cable", "", "cable: tension only", pressed=_all_are("tension_only"))(
+    _toggle("tension_only", marked("tension only, as a cable"), marked("tension and compression"))
 )
-def _toggle_inextensible(context: Context, pixel: Vector) -> None:
-    """Let the selected rods keep their lengths in first-order theory or, if all do so, not."""
-    rods = _selected(context)
-    firm = not all(rod.inextensible for rod in rods)
-    context.model.assign(rods, "inextensible", firm)
-    tell(context, tr("inextensible in first-order theory") if firm else tr("extensible, by its EA"), *rods)
+offer("toggle inextensible", "", "inextensible in first-order theory", pressed=_all_are("inextensible"))(
+    _toggle("inextensible", marked("inextensible in first-order theory"), marked("extensible, by its EA"))
+)
 
 
 def _divide(parts: int, context: Context, pixel: Vector) -> None:
