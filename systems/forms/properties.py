@@ -38,7 +38,8 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
     marked("Section and material"): (
         *(Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment),
         *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.density, Rod.thermal_expansion),
-        *(Rod.tensile_strength, Rod.compressive_strength, Rod.tension_only, Rod.inextensible),
+        *(Rod.tensile_strength, Rod.compressive_strength, Rod.tension_only, Rod.buckles),
+        Rod.inextensible,
     ),
     marked("Supports and joints"): (
         *(Particle.fixed, Particle.fixed_rotation, Particle.support_angle, Particle.support_springs),
