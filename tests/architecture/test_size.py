@@ -13,7 +13,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 68_104,
+    "lines": 68_113,
     "files": 379,
     "names": 3_763,  # functions, classes and constants of modules
     "public names": 2_226,
