@@ -304,9 +304,9 @@ def lines(found: Found) -> Iterator[str]:
             yield from aligned(_cells(f"{tr(title)}, {shown}", factor, rows))
     if members := found["compression_members"]:
         yield ""
-        title = [tr("compression members, kN"), "−N", "π² EI/L²", "−N L²/(π² EI)"]
+        heading = [tr("compression members, kN"), "−N", "π² EI/L²", "−N L²/(π² EI)"]
         given = ([name, -of["axial_force"], of["euler_load"], of["share"]] for name, of in members.items())
-        yield from aligned([title, *given])
+        yield from aligned([heading, *given])
     for way, said in {
         "simulation": marked("largest error of the simulation: {error:.1e}, in the {quantity}"),
         "linear": marked("largest error of linear theory: {error:.1e}, in the {quantity}"),

@@ -487,9 +487,7 @@ class Structure:
             elongation = elongation + self.bending.bow(slopes)[1]
         strain = elongation / self.rest_length
         elastic = self.stiffness * (strain - plastic_strain)
-        slack, given = self.sense * elastic < 0.0, 0.0
-        if self.struts.any():
-            slack, given = self.sense * (elastic - self._edge) < 0.0, self.given_way(elastic)
+        slack, given = self.sense * (elastic - self._edge) < 0.0, self.given_way(elastic)
         force = np.where(slack, given, np.clip(elastic, -self.compression_limit, self.tension_limit))
         flowing = (force != elastic) & ~slack
         bent = None

@@ -91,17 +91,19 @@ class StaticState:
             yielding=structure.at_limit(response)[rods],
             reaction=reaction[:, :2],
             reaction_moment=structure.rotation(reaction),
-            diagrams=_of_struts(model, response)
-            | diagrams(
-                model,
-                response.axis[rods],
-                response.length[rods],
-                structure.chords(displacement)[rods],
-                structure.rotation(displacement)[structure.ends[rods]],
-                (response.axial_force[rods], structure.end_moments(response)[rods]),
-                share=response.share,
-                first_order=structure.first_order,
-            ),
+            diagrams={
+                **_of_struts(model, response),
+                **diagrams(
+                    model,
+                    response.axis[rods],
+                    response.length[rods],
+                    structure.chords(displacement)[rods],
+                    structure.rotation(displacement)[structure.ends[rods]],
+                    (response.axial_force[rods], structure.end_moments(response)[rods]),
+                    share=response.share,
+                    first_order=structure.first_order,
+                ),
+            },
             elastic_energy=elastic,
             contacts=structure.ends[pressing],
             contact_force=-response.axial_force[pressing],
@@ -143,7 +145,7 @@ class StaticState:
             model.give(name, self.columns[name])
 
 
-def _of_struts(model: Model, response: Response) -> dict[str, Array]:
+def _of_struts(model: Model, response: Response) -> dict[str, NDArray[Any]]:
     """How far struts are bent aside, as a column by its name; none where there are none."""
     if not has_struts(model):
         return {}
