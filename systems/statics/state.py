@@ -9,12 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-<<<<<<< HEAD
 from pinjoint.components.cases import settled
-from pinjoint.components.derived import diagrams
-=======
 from pinjoint.components.derived import amplitude, diagrams
->>>>>>> main
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
 from pinjoint.components.particle import of_rigid_supports
