@@ -328,9 +328,13 @@ def curved_lines(model: Model, fineness: float, rows: Rows | None = None) -> Lin
     return Axes.of(model, rows).pieces(rows, fineness)
 
 
-def borne_between(model: Model) -> Array:
-    """What of the force (kN) on each particle acts between the ends of rods, (particles, 2)."""
-    rods, found, between = model.rods, np.zeros((model.particles.count, 2)), Kinks.of(model, model.share)
+def borne_between(model: Model, share: float | None = None) -> Array:
+    """What of the force (kN) on each particle acts between the ends of rods, (particles, 2).
+
+    share: of these loads; None: what acts in what the model shows.
+    """
+    between = Kinks.of(model, model.share if share is None else share)
+    rods, found = model.rods, np.zeros((model.particles.count, 2))
     if len(between.row):
         np.add.at(found, rods.between.ravel(), between.on_ends(rods.count).reshape(-1, 2))
     return found

@@ -16,6 +16,7 @@ from pinjoint.components.rod import bends
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.view import Shape
 from pinjoint.documents.models import document, load
+from pinjoint.documents.shapes import collapse_shapes
 from pinjoint.documents.statics import Statics
 from pinjoint.figures import diagram_titles, figure, printed, shape, signs
 from pinjoint.results import Results
@@ -61,7 +62,9 @@ class Solved:
             reason = statics.message
             raise NoSheet("There is no sheet without an equilibrium. {reason}", reason=reason)
         _, note = settlement.beside(left_out_of_statics(copy))
-        self.said = joined([settlement.message, note])
+        limit = statics.limit_load
+        self.said = joined([settlement.message, note, *([limit.message, limit.divides(copy)] if limit else [])])
+        self.collapse = collapse_shapes(copy) if limit else []
         copy.show(statics)
         self.results = Results.of(copy)
 
@@ -79,7 +82,7 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
         if bends(model) or quantity == AXIAL:
             figures.append(draw(title, diagrams=quantity))
     figures.append(draw(tr("Deflected shape"), moved=True))
-    figures += [draw(shape.title, over=shape) for shape in shapes]
+    figures += [draw(shape.title, over=shape) for shape in (*solved.collapse, *shapes)]
     large = [block for block in figures if block[1][0].fills_page]
     tables = {
         tr("Rods"): _members(layout, solved),

@@ -41,7 +41,7 @@ class External:
         """
         particles, environment = model.particles, model.environment
         loads, share = model.loads, permanent(model)
-        scaled = share * (particles.force + np.array(environment.force)) + borne_between(model)
+        scaled = share * (particles.force + np.array(environment.force)) + borne_between(model, 1.0)
         by_history = np.array([static_factor(history) for history in loads.history], dtype=np.float64)
         factor = by_history * factor_of_each(model, "loads")
         moment = share * particles.moment

@@ -10,11 +10,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from pinjoint.components.language import marked, plural, tr
+from pinjoint.components.bent import Parts
+from pinjoint.components.field import ENDS
+from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.spans import Curves, Kinks, extremes
 from pinjoint.components.theory import FIRST_ORDER
@@ -80,6 +83,61 @@ class LimitLoad:
             LOST: marked("Limit analysis: no answer was found; its numbers differ too much."),
         }
         return tr(said[self.status], factor=self.factor)
+
+    def record(self, model: Model) -> dict[str, Any]:
+        """It as plain data: factor (None where there is none), status, message, forces and hinges by rod, and the motion."""
+        rods, names = model.rods, model.particles.names
+        found: dict[str, Any] = {
+            "load_factor": self.factor if math.isfinite(self.factor) else None,
+            "status": self.status,
+            "message": joined([self.message, self.divides(model)]),
+        }
+        if self.motion is None:
+            return found
+        moving = np.flatnonzero(np.abs(self.motion).max(axis=1) > FLOWS)
+        turning = [
+            {"rod": rods.names[row], "end": ENDS[end], "rotation": float(self.turning[row, end])}
+            for row, end in np.argwhere(self.turning).tolist()
+        ]
+        inside = [
+            {
+                "rod": rods.names[section.row],
+                "distance": section.share * float(rods.original_length[section.row]),
+                "rotation": turned,
+            }
+            for section, turned in self.between
+        ]
+        lengthening = np.flatnonzero(self.lengthening).tolist()
+        return found | {
+            "axial_force": dict(zip(rods.names, self.axial_force.tolist(), strict=True)),
+            "bending_moment": dict(zip(rods.names, self.bending_moment.tolist(), strict=True)),
+            "motion": {names[row]: self.motion[row].tolist() for row in moving.tolist()},
+            "hinges": [*turning, *inside],
+            "lengthening": {rods.names[row]: float(self.lengthening[row]) for row in lengthening},
+        }
+
+    def mechanism(self, model: Model) -> tuple[Parts, Array]:
+        """The collapse as straight parts of rods between hinges, and the motion of their ends, the largest 1, (n, 3)."""
+        assert self.motion is not None
+        particles, rods = model.particles, model.rods
+        between, positions, motions = rods.between.astype(np.intp).tolist(), [particles.position], list[Array]()
+        shifts, axis = self.motion[:, :2], rods.difference / np.maximum(rods.original_length, 1e-300)[:, None]
+        for row in sorted({section.row for section, _ in self.between}):
+            kinks = sorted((section.share, turned) for section, turned in self.between if section.row == row)
+            share, turned = np.array(kinks).T
+            a, b = between[row]
+            apart = np.minimum(share[:, None], share) * (1.0 - np.maximum(share[:, None], share))
+            left = np.array([-axis[row, 1], axis[row, 0]])
+            away = -float(rods.original_length[row]) * (apart @ turned)
+            first = sum(len(places) for places in positions)
+            nodes = [a, *range(first, first + len(share)), b]
+            positions.append(particles.position[a] + share[:, None] * rods.difference[row])
+            motions.append(shifts[a] + share[:, None] * (shifts[b] - shifts[a]) + away[:, None] * left)
+            pairs = [[*pair] for pair in pairwise(nodes)]
+            between[row], between[len(between) :] = pairs[0], pairs[1:]
+        motion = np.concatenate([shifts, *motions])
+        parts = Parts(np.concatenate(positions), np.array(between), np.zeros((len(between), 2)))
+        return parts, np.pad(motion / largest(motion), ((0, 0), (0, 1)))
 
     def divides(self, model: Model) -> str:
         """The sentence about hinges between ends, which load steps do not know; "" if none forms."""

@@ -1,6 +1,8 @@
 """Limit analysis by linear programming against textbooks, a program with hundreds of sections, and load steps."""
 
+import json
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,7 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pinjoint import Session
+from pinjoint.commands.command_line import main
 from pinjoint.documents import models
+from pinjoint.documents.shapes import collapse_shapes
 from pinjoint.systems.statics.limit_analysis import LimitLoad
 from pinjoint.systems.statics.settle import settle
 from tests.reference.elements import Model as Document
@@ -160,3 +165,42 @@ def test_no_limit_and_mechanisms_are_said() -> None:
     assert found_of(document).status == "no limit"
     pulled["force"] = [-10.0, 0.0]
     assert found_of(document).status == "mechanism"
+
+
+def test_the_command_tells_it_beside_load_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "beam.json"
+    path.write_text(json.dumps(beam({"fixed": [True, True]}, distributed_force=[0.0, -Q])), encoding="utf-8")
+    main(["run", str(path), "--static", "--theory", "first-order", "--format", "json"])
+    found = json.loads(capsys.readouterr().out)["limit_load"]
+    assert found["load_factor"] == pytest.approx(3.642766953, rel=1e-9)
+    (hinge, inside) = found["hinges"]
+    assert (hinge["rod"], hinge["end"]) == ("AB", "start")
+    assert inside["distance"] == pytest.approx(LENGTH * (2.0 - math.sqrt(2.0)), rel=1e-6)
+    assert inside["rotation"] == pytest.approx(
+        -hinge["rotation"] * (1.0 + math.sqrt(2.0)) / math.sqrt(2.0), rel=1e-6
+    )
+    main(["verify", str(path)])
+    assert "Limit analysis: it collapses at the load factor 3.64277." in capsys.readouterr().out
+
+
+def test_a_window_offers_to_divide_where_a_hinge_forms_and_draws_the_collapse() -> None:
+    document = beam({"fixed": [True, True]}, distributed_force=[0.0, -Q])
+    document["settings"] = {"theory": "first-order", "load_steps": [5.0]}
+    session = Session.open(document)
+    session.press("q")
+    said, divides = session.document.statics.collapse()
+    assert divides
+    assert "Divide the rod there." in said
+    session.act("divide at hinges")
+    limit = session.document.statics.limit_load
+    assert limit is not None
+    assert limit.factor == pytest.approx(3.642766953, rel=1e-9)
+    assert not limit.between
+    (shape,) = collapse_shapes(session.model)
+    assert shape.title == "Collapse by limit analysis: load × 3.643"
+    assert shape.displacement[2, 1] == pytest.approx(-np.abs(shape.displacement).max())
+    session.undo()
+    assert len(session.rods) == 1
+    (shape,) = collapse_shapes(session.model)
+    assert shape.parts is not None
+    assert len(shape.parts.between) == 2
