@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.cases import permanent
 from pinjoint.components.field import (
     CM,
     ENDS,
@@ -210,6 +211,9 @@ class Rod(Handle):
         "m",
         doc="Original length − rest length × (1 + thermal strain): its elongation where it was drawn.",
         shown=CM,
+    )
+    free_curvature: Field[float] = derived(
+        "1/m", doc="Its curvature without moments, by the temperature gradient."
     )
     end_stiffness: Field[tuple[float, float, float]] = derived(
         "kN·m",
@@ -435,8 +439,10 @@ def _check_ends(table: Table[Any], rows: NDArray[np.intp]) -> None:
 
 
 def is_warm(world: World) -> bool:
-    """True if the temperature of some rod has changed."""
-    return bool(world.tables["rods"].temperature_change.any())
+    """True if rods have another elongation where they were drawn than by their lengths: the temperature of some has changed,
+    or what is permanent acts by another factor than 1."""
+    tables = (world.tables["rods"], world.tables["span_loads"])
+    return any(table.temperature_change.any() for table in tables) or permanent(world) != 1.0
 
 
 def is_warped(world: World) -> bool:

@@ -237,8 +237,8 @@ def _of_loads(model: Model, particle: int) -> Iterator[Reading]:
         text = written.stated(load.force, "kN")
         if load.moment:
             text += f", {written.stated(load.moment, 'kN·m')}"
-        if load.history["kind"] != CONSTANT["kind"]:
-            now = factor_now(model, load.history) * model.loads.force[row]
+        if load.history["kind"] != CONSTANT["kind"] or factor_now(model, load) != 1.0:
+            now = factor_now(model, load) * model.loads.force[row]
             text = tr(
                 "{now} of {whole}", now=written.vector(on_screen("kN")[1] * now, written.DIGITS), whole=text
             )

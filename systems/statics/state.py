@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.cases import settled
 from pinjoint.components.derived import diagrams
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
@@ -160,8 +161,15 @@ class Start:
         return cls(particles.displacement.copy(), strain, particles.rotation.copy(), load_factor=factor)
 
     @classmethod
+    def of(cls, model: Model) -> Start:
+        """The same, in which rigid supports are where loads let them settle."""
+        start, moved = cls.present(model), settled(model)
+        free = start.displacement - of_rigid_supports(model, start.displacement)
+        rotation = np.where(model.particles.fixed_rotation, moved[:, 2], start.rotation)
+        return replace(start, displacement=free + moved[:, :2], rotation=rotation)
+
+    @classmethod
     def undeformed(cls, model: Model, plastic_strain: Array) -> Start:
         """The undeformed beginning with this plastic strain: only supports that have settled are displaced."""
-        particles = model.particles
-        moved = of_rigid_supports(model, particles.displacement)
-        return cls(moved, plastic_strain, np.where(particles.fixed_rotation, particles.rotation, 0.0))
+        moved = settled(model)
+        return cls(moved[:, :2], plastic_strain, moved[:, 2])

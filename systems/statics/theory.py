@@ -172,7 +172,7 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
     displacements of constrained directions as moved supports. factor: of forces and loads; all else acts in full.
     Raises NoEquilibrium, naming the particles, for a mechanism or a free body that the load moves.
     """
-    structure, start = Structure.of(model, FIRST_ORDER), start or Start.present(model)
+    structure, start = Structure.of(model, FIRST_ORDER), start or Start.of(model)
     load = External.of(model).at(factor)
     for body in loose_bodies(structure, load):
         if body.pull:
