@@ -13,6 +13,15 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
+<<<<<<< HEAD
+    "lines": 68_439,
+    "files": 380,
+    "names": 3_781,  # functions, classes and constants of modules
+    "public names": 2_239,
+    "numbers": 1_483,  # other than 0, 1 and 2, in constants and defaults
+    "registers": 47,  # containers that fill while the program runs, and caches of functions
+    "lines of tests": 55_706,
+=======
     "lines": 68_397,
     "files": 379,
     "names": 3_782,  # functions, classes and constants of modules
@@ -20,6 +29,7 @@ MOST = {
     "numbers": 1_487,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
     "lines of tests": 55_775,
+>>>>>>> main
 }
 
 
