@@ -102,7 +102,7 @@ def alone(world: World) -> str:
 
 
 def case_told(world: World, table: str, row: int) -> str:
-    """Behind the value of a load, which is row of a table or of a Field of it: its case, " (wind)", where others act, too."""
+    """Behind the value of a load, a row of a table or of a Field of it: its case, " (wind)", where others act, too."""
     name = table.partition(".")[0]
     case = PERMANENT if name not in TABLES or alone(world) else world.tables[name].case[row]
     return "" if case == PERMANENT else f" ({tr(case)})"

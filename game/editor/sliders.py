@@ -73,10 +73,9 @@ def _choices(context: Context) -> tuple[Tool, ...]:
     names = choices(model)
     if not names:
         return ()
-    tools = [
-        Tool(SHOW, begun(said(model, name)), pressed=not enveloped and name == model.settings.combination)
-        for name in names
-    ]
+    chosen = None if enveloped else model.settings.combination
+    titles = [name if name in model.settings.combinations else begun(said(model, name)) for name in names]
+    tools = [Tool(SHOW, title, pressed=name == chosen) for name, title in zip(names, titles, strict=True)]
     return (
         *tools,
         Tool("toggle envelope", begun(tr("envelope")), pressed=enveloped),

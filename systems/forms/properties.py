@@ -145,7 +145,6 @@ def _groups(model: Model, section: str, elements: Sequence[Handle]) -> Iterator[
         and (turn or field not in _OF_BENDING)
         and (len(elements) == 1 or field.name != "name")
         and field not in _DECIDED
-        and (field is not Settings.combination or model.settings.combinations)
     ]
     rest = [field for field in wanted if not any(field in group for group in GROUPS.values())]
     for title, group in GROUPS.items():
