@@ -13,7 +13,7 @@ from pinjoint.components.cases import SOURCES, factor_of_each, permanent
 from pinjoint.components.field import Column, Field
 from pinjoint.components.load import SpanLoad, varying
 from pinjoint.components.particle import DEFAULT_MASS
-from pinjoint.components.rod import AT_STRENGTH, DEFAULT_STIFFNESS
+from pinjoint.components.rod import AT_STRENGTH, DEFAULT_STIFFNESS, euler_load
 from pinjoint.components.section import Section
 from pinjoint.components.spans import Curves, Kinks
 from pinjoint.components.table import Table
@@ -237,14 +237,39 @@ def inertias(world: World) -> None:
         world.writable("particles.turning")[...] = np.where(free, 1000.0 / inertia, 0.0)
 
 
-@derives("rods", "tension_limit compression_limit", "tensile_strength compressive_strength tension_only")
+@derives("rods", "buckling_load", "buckles bending_stiffness rest_length fixity tension_only inextensible")
+def buckling_loads(world: World) -> None:
+    """P of struts, infinite of other rods."""
+    rods, load = world.tables["rods"], world.writable("rods.buckling_load")
+    load[...] = np.where(rods.buckles, euler_load(world), np.inf) if rods.buckles.any() else np.inf
+
+
+@derives("rods", "lateral_deflection", "buckling_load stiffness rest_length strain plastic_strain")
+def lateral_deflections(world: World) -> None:
+    """Amplitude (2L₀/π) √r of the half sine of struts, r being what of their shortening is not elastic."""
+    rods, found = world.tables["rods"], world.writable("rods.lateral_deflection")
+    found[...] = amplitude(rods, rods.strain, rods.plastic_strain)
+
+
+def amplitude(rods: Table[Any], strain: Column, plastic_strain: Column) -> Column:
+    """That at these strains, (rods,)."""
+    nearer = plastic_strain - strain - rods.buckling_load / rods.stiffness
+    return 2.0 / math.pi * rods.rest_length * np.sqrt(np.maximum(nearer, 0.0))
+
+
+@derives(
+    "rods",
+    "tension_limit compression_limit",
+    "tensile_strength compressive_strength tension_only buckling_load",
+)
 def limits(world: World) -> None:
-    """Strengths with "unlimited" (None or 0) as infinity; a cable goes slack before any compression."""
+    """Strengths with "unlimited" (None or 0) as infinity; cables slacken, and slender struts buckle, before they yield."""
     for direction, name in (("tension", "tensile"), ("compression", "compressive")):
         values = world.tables["rods"].column(f"{name}_strength")
         unlimited = np.isnan(values) | (values == 0.0)
         world.writable(f"rods.{direction}_limit")[...] = np.where(unlimited, np.inf, values)
-    world.writable("rods.compression_limit")[world.tables["rods"].tension_only] = np.inf
+    rods, limit = world.tables["rods"], world.writable("rods.compression_limit")
+    limit[rods.tension_only | (rods.buckling_load < limit)] = np.inf
 
 
 @derives("rods", "moment_limit", "plastic_moment fixity")

@@ -48,7 +48,7 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
         *(Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment),
         *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.density, Rod.thermal_expansion),
         *(Rod.tensile_strength, Rod.compressive_strength, Rod.plastic_moment),
-        *(Rod.tension_only, Rod.inextensible),
+        *(Rod.tension_only, Rod.buckles, Rod.inextensible),
     ),
     marked("Supports and joints"): (
         *(Particle.fixed, Particle.fixed_rotation, Particle.support_angle, Particle.support_springs),
