@@ -8,6 +8,7 @@ from pinjoint import Session
 from pinjoint.components.cases import acting, choices
 from pinjoint.components.language import spoken
 from pinjoint.documents.document import document, parse
+from pinjoint.editor.scenes.properties import Properties
 from pinjoint.systems.render.picture import compose, hits_at
 from pinjoint.systems.render.theme import load_theme
 from tests.game.test_frames_by_mouse import opened
@@ -123,7 +124,9 @@ def test_a_table_of_combinations_is_typed_and_taken_back() -> None:
     session.press("return")
     assert list(session.settings.combinations) == ["ULS", "SLS"]
     session.click_box("combination")
-    session.scenes.active.choose_word(session, 0)  # of its list: remove it
+    scene = session.scenes.active
+    assert isinstance(scene, Properties)
+    scene.choose_word(session, 0)  # of its list: remove it
     assert list(session.settings.combinations) == ["SLS"]
     session.press("escape")
     session.press("escape")
