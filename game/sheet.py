@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -82,7 +83,8 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
         if bends(model) or quantity == AXIAL:
             figures.append(draw(title, diagrams=quantity))
     figures.append(draw(tr("Deflected shape"), moved=True))
-    figures += [draw(shape.title, over=shape) for shape in (*solved.collapse, *shapes)]
+    figures += [draw(shape.title, over=replace(shape, title="")) for shape in solved.collapse]
+    figures += [draw(shape.title, over=shape) for shape in shapes]
     large = [block for block in figures if block[1][0].fills_page]
     tables = {
         tr("Rods"): _members(layout, solved),

@@ -74,7 +74,9 @@ class Shapes:
         return math.cos(2.0 * math.pi * self._time / PERIOD)
 
     def next(self) -> None:
-        """Go on to the next: mechanisms, buckling by its load, modes by their frequency, then none. Raises NoShape."""
+        """Go on to the next: mechanisms, in statics collapse, buckling by its load, modes by their frequency, else collapse, then
+        none. Raises NoShape.
+        """
         self.go_through(lambda: _first_ones(self._model), begins=self.shown is None)
 
     def go_through(self, find: Callable[[], list[Shape]], *, begins: bool) -> None:
@@ -98,10 +100,11 @@ def _first_ones(model: Model) -> list[Shape]:
         )
     _check_range(model)
     found = mechanism_shapes(model, LOWEST)
-    found += collapse_shapes(model)
+    collapse, solved = collapse_shapes(model), model.solution is not None
+    found += collapse * solved
     with suppress(NoShape):
         found += buckling_shapes(model, _LOWEST_BUCKLING, elastic=True)
-    found += mode_shapes(model, LOWEST)
+    found += mode_shapes(model, LOWEST) + collapse * (not solved)
     if not found:
         raise NoShape("There are no mechanisms and no modes, because no rod has an end that is free to move.")
     return found
