@@ -74,8 +74,8 @@ class Shapes:
         return math.cos(2.0 * math.pi * self._time / PERIOD)
 
     def next(self) -> None:
-        """Go on to the next: mechanisms, in statics collapse, buckling by its load, modes by their frequency, else collapse, then
-        none. Raises NoShape.
+        """Go on to the next: mechanisms, in statics collapse, buckling by its load, modes by their frequency, elsewhere
+        collapse, then none. Raises NoShape.
         """
         self.go_through(lambda: _first_ones(self._model), begins=self.shown is None)
 
