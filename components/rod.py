@@ -187,6 +187,13 @@ class Rod(Handle):
     yielded_at: Field[float | None] = state(
         "s", nullable=True, absent="not yet", doc="When it first yielded in this run."
     )
+    hinge_formed_at: Field[Vector] = state(
+        "s",
+        shape=(2,),
+        axes=ENDS,
+        default=(-1.0, -1.0),
+        doc="When plastic hinges first formed at its ends in this run; −1: not yet.",
+    )
     stiffness: Field[float] = derived(
         "kN",
         default=DEFAULT_STIFFNESS,
@@ -522,6 +529,11 @@ def can_yield(world: World) -> bool:
 def can_hinge(world: World) -> bool:
     """True if plasticity is on and some end of a rod has a plastic moment."""
     return bool(world.tables["settings"].plasticity[0] and np.isfinite(world.tables["rods"].moment_limit).any())
+
+
+def is_kinked(world: World) -> bool:
+    """True if some end of a rod has turned in a plastic hinge, or can."""
+    return can_hinge(world) or bool(world.tables["rods"].plastic_rotation.any())
 
 
 def has_strength(world: World) -> bool:
