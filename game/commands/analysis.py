@@ -17,7 +17,7 @@ from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, bearing, bends
+from pinjoint.components.rod import Rod, bearing, bends, has_struts, is_kinked
 from pinjoint.components.settings import AUTOMATIC
 from pinjoint.components.table import fields_of
 from pinjoint.components.theory import EXACT
@@ -68,7 +68,11 @@ def reported(model: Model, group: str) -> tuple[Field[Any], ...]:
     bent = bends(model) or bearing(model).any()
     fields = model.tables[group].fields.values()
     of_mods = (field for field in fields if field.component and field.dtype in (float, int, bool))
-    return (*_OWN[group], *(_OF_BENDING[group] if bent else ()), *of_mods)
+    of_struts = _facts(Rod, "lateral_deflection") if group == "rods" and has_struts(model) else ()
+    of_hinges = (
+        _facts(Rod, "plastic_rotation", "hinge_yielding") if group == "rods" and is_kinked(model) else ()
+    )
+    return (*_OWN[group], *(_OF_BENDING[group] if bent else ()), *of_hinges, *of_struts, *of_mods)
 
 
 def facts(
@@ -217,6 +221,7 @@ class Analysis:
 
     def run_in(self, session: Headless, name: str) -> Run:
         """A run through time in a session, which adds remarks of theory and its measured error."""
+        from pinjoint.documents.chronicle import hinge_records
         from pinjoint.systems.run.measured_error import IN_A_COMMAND
 
         reported: list[State] = []
@@ -234,7 +239,7 @@ class Analysis:
         return {
             **found,
             "message": joined([session.message, unknown]),
-            "events": [*happened, *remarks],
+            "events": [*hinge_records(session.model), *happened, *remarks],
             "error_estimate": error.record(bent=bends(session.model)) if error is not None else None,
         }
 
