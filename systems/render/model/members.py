@@ -132,7 +132,7 @@ def gaps(lengths: Values, unit: float) -> Values:
 def draw_span_loads(sheet: Sheet) -> None:
     """What acts between the ends of rods: rows of arrows on the side from which they push, single arrows, curved ones."""
     spans = Spans.of(sheet.model)
-    if not len(spans.row):
+    if not len(spans.row) or sheet.model.share == 0.0:  # nothing holds the structure, and it carries nothing
         return
     largest = sheet.model.share * max(float(np.hypot(*force.T).max()) for force in (spans.first, spans.last))
     spans = spans.some(np.isin(spans.row, sheet.rods))
