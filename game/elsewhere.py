@@ -42,6 +42,8 @@ UNITS = {unit.name: unit for unit in (RASTER, PARTING, EVENTS, HORIZONS, PILES, 
 # Of `python -P -c`.
 START = "import sys; sys.path[:] = sys.argv[1:]; from pinjoint.elsewhere import main; main()"
 INTERVAL = 0.05  # s between two looks
+# What edits and steps need, which takes several frames to import.
+LIBRARIES = ("pinjoint.systems.plasticity.kernels", "scipy.spatial", "scipy.sparse.linalg")
 _ENDING = 0.5  # s that what a thread is at may take before the window goes without it
 
 _HOME = Path(__file__).parent
@@ -118,12 +120,13 @@ class Elsewhere:
     # --- in the thread -------------------------------------------------------------------------------
 
     def _run(self) -> None:
-        self._look()
         read_sources([integrator for integrator in INTEGRATORS.values() if integrator.mod is None])
-        for library in ("pinjoint.systems.plasticity.kernels", "scipy.spatial", "scipy.sparse.linalg"):
-            importlib.import_module(library)  # what edits and steps need, which takes several frames
+        libraries = list(LIBRARIES)
         while not self._closed.wait(INTERVAL):
             self._look()
+            modules = [work.module for work in self.needed if work.module is not None]
+            if libraries and modules and all(map(self.is_ready, modules)):  # what a run begins with goes before
+                importlib.import_module(libraries.pop(0))
 
     def _look(self) -> None:
         if self._compiles:
@@ -131,13 +134,15 @@ class Elsewhere:
         self._load()
 
     def _load(self) -> None:
-        """Load what is compiled, or else rewrite what will be interpreted; one program at a time."""
-        wanted = [work.module for work in (*self.needed, *self.later) if work.module is not None]
-        for module in (*interpreted_here(), *wanted):
+        """Rewrite what a run begins with, interpreted; then load what is compiled, or else rewrite it; one at a time."""
+        needed, later = ([w.module for w in works if w.module is not None] for works in (self.needed, self.later))
+        unready = [module for module in needed if not self.is_ready(module)]  # before loading, which takes its time
+        for module in (*unready, *interpreted_here(), *needed, *later):
             try:
                 if module.is_loaded:
                     continue
-                if self.can_load and module.is_compiled() and module.load_kept():
+                compiled = module not in unready and self.can_load and module.is_compiled()
+                if compiled and module.load_kept():
                     return
                 if not self.is_ready(module):
                     module.rewrite_all()

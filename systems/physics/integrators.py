@@ -99,6 +99,7 @@ def runge_kutta_constants(tableau: Tableau, proportional: float = 0.0, lengthen:
         "SMALLEST_SHARE": 1e-12,  # of the step to try, below which the run is given up
         "EVENT_FLOOR": 1e-11,  # share of a strength within which an event is located
         "EVENT_WIDTH": 1e-10,  # share of a step within which it is
+        "EVENT_PATIENCE": 3.0,  # how often one end of the interval it lies in moves before the interval is halved
         "SLACK": 0.0,
     }
 
