@@ -135,8 +135,12 @@ class Elsewhere:
 
     def _load(self) -> None:
         """Rewrite what a run begins with, interpreted; then load what is compiled, or else rewrite it; one at a time."""
-        needed, later = ([w.module for w in works if w.module is not None] for works in (self.needed, self.later))
-        unready = [module for module in needed if not self.is_ready(module)]  # before loading, which takes its time
+        needed, later = (
+            [w.module for w in works if w.module is not None] for works in (self.needed, self.later)
+        )
+        unready = [
+            module for module in needed if not self.is_ready(module)
+        ]  # before loading, which takes its time
         for module in (*unready, *interpreted_here(), *needed, *later):
             try:
                 if module.is_loaded:
