@@ -42,6 +42,11 @@ class FirstOrder:
         self._matrix = structure.initial_tangent
         self._factor = regular(self._matrix, self._measure.weight)
 
+    @classmethod
+    def of(cls, model: Model) -> FirstOrder:
+        """That of a model."""
+        return cls(model, Structure.of(model, FIRST_ORDER))
+
     @cached_property
     def held(self) -> bool:
         """True if every motion is resisted, and by so much that no digits are lost."""
@@ -307,15 +312,14 @@ def _localised(basis: Array) -> Array:
 # --- influence -------------------------------------------------------------------------------------------
 
 
-def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Array:
+def influence_line(theory: FirstOrder, quantity: str, row: int, axis: int = 0, share: float = 0.0) -> Array:
     """What a unit force on each particle along x and y, where members bend and a moment, does to a quantity, (n, …).
 
-    quantity, row, axis: "axial_force" or "shear" of a rod, its "bending_moment" at an end (0: start, 1: end); of a direction
-    of a particle (2: turning) its "reaction" or "reaction_moment", its "displacement" or "rotation". Of a force, by
+    quantity, row: "axial_force" or "shear" of a rod, its "bending_moment" at a share of its length; by axis (2: turning)
+    of a particle its "reaction" or "reaction_moment", its "displacement" or "rotation". Of a force, by
     Müller-Breslau, it is the deflection that a unit displacement in its place causes; of a displacement, by Maxwell, that
     under a unit load there. Raises NoEquilibrium.
     """
-    theory = FirstOrder(model, Structure.of(model, FIRST_ORDER))
     structure, unit = theory.structure, np.zeros(theory.structure.fixed.shape)
     if quantity == "axial_force":
         pull = np.zeros_like(structure.difference)
@@ -324,9 +328,7 @@ def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Arra
     if quantity in ("shear", "bending_moment"):
         assert structure.bending is not None
         kinks = np.zeros(structure.ends.shape)
-        kinks[row] = (
-            1.0 / structure.original_length[row] if quantity == "shear" else np.eye(2)[axis] * [-1.0, 1.0]
-        )
+        kinks[row] = 1.0 / structure.original_length[row] if quantity == "shear" else (share - 1.0, share)
         return theory.deflection(structure.held(structure.bending.moments(kinks)))
     unit[row, axis] = 1.0
     unit = structure.along_axes(unit)
