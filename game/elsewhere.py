@@ -71,13 +71,13 @@ class Work:
         """Why it cannot be had from the other process; "" if it can, as far as is known."""
         if self.ended is None or self.module is None or self.module.is_compiled():
             return ""
-        return self.ended or tr("what was compiled was not kept")
+        return self.ended or tr("what was got ready was not kept")
 
 
 def tell_slower(problem: str) -> None:
-    """Say why runs go on without machine code, if they do."""
+    """Say why runs go on in their slow form, if they do."""
     if problem:
-        cache.tell(tr("Runs go on without machine code, and slower: {problem}.", problem=problem))
+        cache.tell(tr("Runs go on, but more slowly than they could: {problem}.", problem=problem))
 
 
 class Elsewhere:
@@ -153,7 +153,7 @@ class Elsewhere:
                     return
             except Exception as error:  # such as a compiler that is damaged
                 self.can_load = False
-                tell_slower(tr("machine code cannot be loaded ({error})", error=error))
+                tell_slower(tr("what makes them fast cannot be loaded ({error})", error=error))
                 return
 
     def _compile(self) -> None:
@@ -184,7 +184,7 @@ class Elsewhere:
     def _note_end(self, process: subprocess.Popen[str]) -> None:
         """Note what the other process did; a job at which it ended by itself is not tried again."""
         said = process.communicate()[0].splitlines()
-        status = tr("the process that compiles ended with status {status}", status=process.returncode)
+        status = tr("the process that gets it ready ended with status {status}", status=process.returncode)
         for work, ended in zip(self._at_work, [*said, *([status] if process.returncode else [])], strict=False):
             work.ended = ended
 
