@@ -135,16 +135,14 @@ class Elsewhere:
 
     def _load(self) -> None:
         """Rewrite what a run begins with, interpreted; then load what is compiled, or else rewrite it; one at a time."""
-        needed, later = (
-            [w.module for w in works if w.module is not None] for works in (self.needed, self.later)
-        )
-        unready = [
-            module for module in needed if not self.is_ready(module)
-        ]  # before loading, which takes its time
+        works = self.needed, self.later
+        needed, later = ([work.module for work in some if work.module is not None] for some in works)
+        unready = [module for module in needed if not self.is_ready(module)]
         for module in (*unready, *interpreted_here(), *needed, *later):
             try:
                 if module.is_loaded:
                     continue
+                # What has to be rewritten is, before anything is loaded, which takes its time.
                 compiled = module not in unready and self.can_load and module.is_compiled()
                 if compiled and module.load_kept():
                     return

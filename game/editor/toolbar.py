@@ -145,7 +145,7 @@ def tool(context: Context, name: str, title: str = "") -> Tool | None:
 @lru_cache(maxsize=1024)  # a frame has some fifty
 def _tool(spoken: str, name: str, title: str, word: str, *facts: Any) -> Tool:
     """A button or an entry whose title is said in the present language."""
-    return Tool(name, tr(title), *facts, word=tr(word) if word else "")
+    return Tool(name, tr(title), *facts, tr(word) if word else "")
 
 
 # --- menus -----------------------------------------------------------------------------------------------

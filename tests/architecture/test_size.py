@@ -13,7 +13,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 69_450,
+    "lines": 69_448,
     "files": 380,
     "names": 3_853,  # functions, classes and constants of modules
     "public names": 2_280,
