@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -145,7 +146,7 @@ def tool(context: Context, name: str, title: str = "") -> Tool | None:
 @lru_cache(maxsize=1024)  # a frame has some fifty
 def _tool(spoken: str, name: str, title: str, word: str, *facts: Any) -> Tool:
     """A button or an entry whose title is said in the present language."""
-    return Tool(name, tr(title), *facts, tr(word) if word else "")
+    return replace(Tool(name, tr(title), *facts), word=tr(word) if word else "")
 
 
 # --- menus -----------------------------------------------------------------------------------------------
