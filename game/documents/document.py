@@ -20,6 +20,7 @@ from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod
 from pinjoint.components.section import NAMES, given_by
+from pinjoint.components.settings import Settings
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.table import fields_of
 from pinjoint.components.wording import cut, is_broken, missing, quoted, remedy
@@ -95,7 +96,9 @@ def _parsed(document: Any) -> Model:
     model.foreign_versions = dict(document.get(MODS, {}))
     model.title = _text(document, "title")
     model.description = _text(document, "description")
-    for name, kind in SECTIONS.items():
+    for name, kind in sorted(
+        SECTIONS.items(), key=lambda item: item[1] is Settings
+    ):  # which may name a load case
         if name in document:
             _read(model, _section(f"$.{name}", kind, document[name]))
     if FOREIGN in document:
@@ -235,18 +238,19 @@ def _read(model: Model, section: _Section) -> None:
     if kind is Grid:
         _check_grids(section, columns["shown"])
     handles: Sequence[Handle]
-    if kind.single:
-        handles = [model.tables[kind.table][0]]
-        for name, column in columns.items():
-            model.apply(Assign(kind.table, name, (handles[0].entity,), column))
-    else:
-        fields = model.tables[kind.table].fields
-        try:
-            with model.naming(lambda row, field: section.where(row, fields[field].key if field else "")):
+    table = model.tables[kind.table]
+    try:
+        with model.naming(lambda row, field: section.where(row, table.fields[field].key if field else "")):
+            if kind.single:
+                handles = [table[0]]
+                for name, column in columns.items():
+                    model.apply(Assign(kind.table, name, (handles[0].entity,), column))
+                kind.after_change(table, np.array([0]), table.fields)
+            else:
                 handles = model.create(kind, len(section.elements), **columns)
-        except FieldError as error:
-            said = str(error)  # rules of mods need not name the place
-            raise ModelError(said if said.startswith("$") else joined([f"{section.path}:", said])) from None
+    except FieldError as error:
+        said = str(error)  # rules of mods need not name the place
+        raise ModelError(said if said.startswith("$") else joined([f"{section.path}:", said])) from None
     if FOREIGN in section.keys:
         _keep_foreign(model, section, handles)
 

@@ -303,7 +303,9 @@ class Path:
         stiffness = (structure.stiffness / structure.rest_length)[limited]
         pull = structure.elongations(response, np.flatnonzero(limited)) * sign[:, None]
         softening = pull @ elastic.factor.solve(np.ascontiguousarray(pull.T))
-        matrix = np.diag(stiffness) - stiffness[:, None] * softening * stiffness
+        left = structure.softening[limited] * branches.verge[limited]
+        hardened = stiffness / (1.0 - left)  # of what softens, with what is left of its stiffness
+        matrix = np.diag(hardened) - stiffness[:, None] * softening * stiffness
         growth = stiffness * self._growth(response, branches, elastic)[limited]
         return limited, 0.5 * (matrix + matrix.T), growth
 
@@ -526,7 +528,8 @@ class Path:
         """A response as it were if all rods stayed on the pieces of their laws that a tangent at the start is on."""
         branches = self.branches(start.response)
         edge = np.where(branches.outward > 0.0, branches.high, branches.low)
-        force = np.where(piece.slack, 0.0, np.where(piece.flowing, edge, response.elastic_force))
+        given = self.structure.given_way(response.elastic_force)
+        force = np.where(piece.slack, given, np.where(piece.flowing, edge, response.elastic_force))
         return replace(response, axial_force=force, flowing=piece.flowing, slack=piece.slack)
 
     def _is_on(self, start: Point, piece: Tangent, found: Point) -> bool:

@@ -92,8 +92,7 @@ class FirstOrder:
     def _answer(self, load: Array, longer: Array) -> tuple[Array, Array]:
         """The same, and what the axial forces of inextensible rods are beside those by their EA: Lagrange's multipliers."""
         structure, model = self.structure, self.model
-        if structure.sense.any():
-            rows = np.flatnonzero(structure.sense)
+        if len(rows := np.flatnonzero((structure.sense != 0.0) & ~structure.struts)):
             cables = plural("{rods} acts", "{rods} act", len(rows), rods=begun(rod_names(model, rows)))
             message = tr(
                 "{cables} in tension only, and linear theory needs rods that bear compression as well. Find the equilibrium"
@@ -172,7 +171,7 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
     displacements of constrained directions as moved supports. factor: of forces and loads; all else acts in full.
     Raises NoEquilibrium, naming the particles, for a mechanism or a free body that the load moves.
     """
-    structure, start = Structure.of(model, FIRST_ORDER), start or Start.present(model)
+    structure, start = Structure.of(model, FIRST_ORDER), start or Start.of(model)
     load = External.of(model).at(factor)
     for body in loose_bodies(structure, load):
         if body.pull:
