@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 69_407,
+    "lines": 69_849,
     "files": 380,
-    "names": 3_830,  # functions, classes and constants of modules
-    "public names": 2_272,
-    "numbers": 1_489,  # other than 0, 1 and 2, in constants and defaults
+    "names": 3_870,  # functions, classes and constants of modules
+    "public names": 2_293,
+    "numbers": 1_495,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 56_395,
+    "lines of tests": 56_748,
 }
 
 
