@@ -76,8 +76,14 @@ class Assessment:
         begun = self._begun
         revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
         if self._theories is None or self._theories[0] != revision:
-            names = ("particles.displacement", "rods.plastic_strain", "particles.rotation")
-            start = Start(*(begun.column(self._model, name).copy() for name in names)) if begun else None
+            start = None
+            if begun:
+                names = ("rods.plastic_strain", "rods.plastic_rotation")
+                permanent = np.column_stack([begun.column(self._model, name) for name in names])
+                moved = (
+                    begun.column(self._model, f"particles.{name}").copy() for name in ("displacement", "rotation")
+                )
+                start = Start(*moved, permanent)
             self._theories = revision, Theories.of(self._model, start)
         return self._theories[1]
 
