@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from pinjoint.components.field import Column, Field
 from pinjoint.components.load import SpanLoad, varying
 from pinjoint.components.particle import DEFAULT_MASS
-from pinjoint.components.rod import DEFAULT_STIFFNESS
+from pinjoint.components.rod import AT_STRENGTH, DEFAULT_STIFFNESS
 from pinjoint.components.section import Section
 from pinjoint.components.spans import Curves, Kinks
 from pinjoint.components.table import Table
@@ -231,6 +231,22 @@ def limits(world: World) -> None:
     world.writable("rods.compression_limit")[world.tables["rods"].tension_only] = np.inf
 
 
+@derives("rods", "moment_limit", "plastic_moment fixity")
+def moment_limits(world: World) -> None:
+    """Plastic moments of the ends that moments reach, with "unlimited" as infinity."""
+    rods = world.tables["rods"]
+    limited = (rods.fixity > 0.0) & ~np.isnan(rods.plastic_moment)[:, None]
+    world.writable("rods.moment_limit")[...] = np.where(limited, rods.plastic_moment[:, None], np.inf)
+
+
+@derives("rods", "hinge_yielding", "end_moment moment_limit settings.plasticity")
+def plastic_hinges(world: World) -> None:
+    """Ends whose moments are at the plastic moment, but for round-off."""
+    rods, settings = world.tables["rods"], world.tables["settings"]
+    reached = np.abs(rods.end_moment) >= rods.moment_limit * AT_STRENGTH
+    world.writable("rods.hinge_yielding")[...] = reached & settings.plasticity[:, None]
+
+
 @derives(
     "particles",
     "constant_force",
@@ -282,7 +298,8 @@ def chord_rotation(world: World) -> Column:
         small: Column = sine / np.maximum(rods.original_length, 1e-300) ** 2
         return small
     chord = np.arctan2(sine, (difference * (difference + relative)).sum(axis=1))
-    return with_full_turns(chord, rods.turning_shares, particles.rotation[rods.between])
+    rotation = particles.rotation[rods.between] - rods.plastic_rotation
+    return with_full_turns(chord, rods.turning_shares, rotation)
 
 
 def with_full_turns(chord: Column, turning_shares: Column, rotation: Column) -> Column:
@@ -296,6 +313,7 @@ def with_full_turns(chord: Column, turning_shares: Column, rotation: Column) -> 
     "rods",
     "end_axial_force shear bending_moment end_rotation largest_moment",
     "particles.displacement particles.rotation between difference axial_force end_moment turning_shares"
+    " plastic_rotation"
     f" {_BETWEEN} span_load bending_stiffness thermal_expansion temperature_gradient",
 )
 def present_diagrams(world: World) -> None:
@@ -353,11 +371,11 @@ def diagrams(
 
 
 def rigid_slopes(rods: Table[Any], rotation: Column, chord: Column) -> Column:
-    """Slopes to the chords of those ends that are joined rigidly, 0 at others; likewise of rates; (rods, 2).
+    """Slopes to the chords of those ends that are joined rigidly, less plastic rotations; 0 at others; (rods, 2).
 
     rotation: of the particles at both ends, (rods, 2). chord: (rods,).
     """
-    return np.where(rods.turning_shares > 0.0, rotation - chord[:, None], 0.0)
+    return np.where(rods.turning_shares > 0.0, rotation - chord[:, None] - rods.plastic_rotation, 0.0)
 
 
 def all_slopes(rods: Table[Any], slopes: Column, load: Column) -> Column:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.bent import borne_between, is_frame
-from pinjoint.components.derived import chord_rotation, on_joints, rigid_slopes
+from pinjoint.components.derived import chord_rotation, on_joints
 from pinjoint.components.language import tr
 from pinjoint.components.load import factor_now
 from pinjoint.components.model import Model
@@ -96,7 +96,8 @@ def _of_bending(model: Model, along: Vectors) -> Vectors:
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
     length = np.maximum(_lengths(model), 1e-300)
     turning = ((particles.velocity[last] - particles.velocity[first]) * left).sum(axis=1) / length
-    rate = rigid_slopes(rods, particles.angular_velocity[rods.between], turning)
+    spin = particles.angular_velocity[rods.between]
+    rate = np.where(rods.turning_shares > 0.0, spin - turning[:, None], 0.0)
     start, mixed, end = rods.end_damping.T
     damper = np.stack([start * rate[:, 0] + mixed * rate[:, 1], mixed * rate[:, 0] + end * rate[:, 1]], axis=1)
     shear = rods.shear + (damper.sum(axis=1) / length)[:, None]

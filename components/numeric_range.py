@@ -20,7 +20,7 @@ _TABLES = ("particles", "rods", "loads", "span_loads", "environment", "settings"
 # What is checked besides what a person made: state that a person can type; and what follows, from positions that may be
 # too near or too far, as E·A and E·I, and from bending stiffnesses.
 _OTHERS = (
-    *("displacement", "velocity", "rotation", "angular_velocity", "plastic_strain"),
+    *("displacement", "velocity", "rotation", "angular_velocity", "plastic_strain", "plastic_rotation"),
     *("rest_length", "mass", "stiffness", "bending_stiffness", "inertia"),
 )
 

@@ -36,9 +36,11 @@ from pinjoint.components.section import (
 from pinjoint.components.table import Table, flags
 from pinjoint.components.world import World
 
+AT_STRENGTH = 1.0 - 1e-9  # share of its strength from which on a rod is said to yield
 DEFAULT_STIFFNESS = 164640.0  # kN, of a rod of which no other is known
 _NAMED_BY = {"area": "section", "second_moment": "section", "youngs_modulus": "material"}
 _NUMBERS_OF_NAMES = {*_NAMED_BY, "material"}
+_OF_HINGES = {"plastic_moment", "prescribed_bending_stiffness", "section", *_NAMED_BY}
 
 
 class Rod(Handle):
@@ -112,6 +114,9 @@ class Rod(Handle):
         minimum=0.0,
         doc="Compression at which it yields; 0: unlimited.",
     )
+    plastic_moment: Field[float | None] = if_known(
+        "kN·m", absent="unlimited", doc="Bending moment at which its ends yield, as plastic hinges."
+    )
     damping: Field[float] = Field(
         "kN·s/m",
         default=100.0,
@@ -176,6 +181,9 @@ class Rod(Handle):
         doc="c in the damping moments at its ends, c [4 2; 2 4] × rates of the end slopes; automatic: damping × EI/EA.",
     )
     plastic_strain: Field[float] = state(doc="Permanent part of the strain.")
+    plastic_rotation: Field[Vector] = state(
+        "rad", shape=(2,), axes=ENDS, doc="Permanent part of the slopes of its ends, in plastic hinges."
+    )
     yielded_at: Field[float | None] = state(
         "s", nullable=True, absent="not yet", doc="When it first yielded in this run."
     )
@@ -242,6 +250,9 @@ class Rod(Handle):
     )
     tension_limit: Field[float] = derived("kN", doc="Tensile strength; infinite if unlimited.")
     compression_limit: Field[float] = derived("kN", doc="Compressive strength; infinite if unlimited.")
+    moment_limit: Field[Vector] = by_end(
+        "kN·m", doc="Plastic moment; infinite if unlimited, or where an end turns freely."
+    )
     axial_force: Field[float] = derived(
         "kN", doc="Positive in tension; the force of its damper is not included."
     )
@@ -269,6 +280,9 @@ class Rod(Handle):
         doc="The bending moment of largest size, and how far from the start.",
     )
     yielding: Field[bool] = derived(dtype=bool, doc="Its axial force has reached a strength.")
+    hinge_yielding: Field[tuple[bool, bool]] = by_end(
+        dtype=bool, doc="The bending moment there has reached the plastic moment: a plastic hinge."
+    )
 
     @property
     def ends(self) -> tuple[Particle, Particle]:
@@ -310,6 +324,8 @@ class Rod(Handle):
                 )
         if "section" in changed or not _NUMBERS_OF_NAMES.isdisjoint(changed):
             _heed_names(table, rows, changed)
+        if not _OF_HINGES.isdisjoint(changed):
+            _check_plastic_moment(table, rows)
         if "temperature_change" in changed or "thermal_expansion" in changed:
             _check_warmth(table, rows)
 
@@ -367,6 +383,18 @@ def _contradictions(rod: Rod, changed: Collection[str]) -> list[tuple[str, str]]
         and getattr(rod, name) is not None
         and not math.isclose(getattr(rod, number) or math.inf, given[number], rel_tol=1e-3)
     ]
+
+
+def _check_plastic_moment(table: Table[Any], rows: NDArray[np.intp]) -> None:
+    """Only what bends has a plastic moment; that of a section waits until its rod does."""
+    idle = (table.bending_stiffness[rows] == 0.0) & ~np.isnan(table.plastic_moment[rows])
+    for row in rows[idle & (table.section[rows] == None)][:1].tolist():  # noqa: E711 (of each row)
+        raise FieldError(
+            "{rod}: it does not bend, so that it has no plastic moment ({moment:g} kN·m); give it a bending stiffness"
+            " above 0, or remove the plastic moment.",
+            rod=table.world.describe(table[row]),
+            moment=table.plastic_moment[row],
+        )
 
 
 def _check_warmth(table: Table[Any], rows: NDArray[np.intp]) -> None:
@@ -489,6 +517,11 @@ def has_cables(world: World) -> bool:
 def can_yield(world: World) -> bool:
     """True if plasticity is on and some rod has a strength."""
     return bool(world.tables["settings"].plasticity[0]) and has_strength(world)
+
+
+def can_hinge(world: World) -> bool:
+    """True if plasticity is on and some end of a rod has a plastic moment."""
+    return bool(world.tables["settings"].plasticity[0] and np.isfinite(world.tables["rods"].moment_limit).any())
 
 
 def has_strength(world: World) -> bool:

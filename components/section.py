@@ -22,15 +22,17 @@ USUAL_SECTION, USUAL_MATERIAL = "IPE 200", "S235"  # of members of which nothing
 _RECTANGLE = re.compile(r"rect(?:angle)? (\d+(?:\.\d+)?)×(\d+(?:\.\d+)?)")
 _SQUARE = re.compile(r"(shs [\d.]+)×([\d.]+)×([\d.]+)")  # with both widths, as catalogues write it
 _MPA, _GPA = 1e3, 1e6  # kN/m²
+Numbers = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class Section:
-    """A cross-section, with area (m²), second moment of area (m⁴) and depth (m)."""
+    """A cross-section, with area (m²), second moment of area (m⁴), plastic section modulus (m³) and depth (m)."""
 
     name: str
     area: float
     second_moment: float
+    plastic_modulus: float
     depth: float
 
     @classmethod
@@ -67,8 +69,8 @@ class Material:
 # --- properties from dimensions --------------------------------------------------------------------------
 
 
-def rolled(h: float, b: float, t_w: float, t_f: float, r: float) -> tuple[float, float]:
-    """A and I of an I-section with fillets of radius r between web and flanges."""
+def rolled(h: float, b: float, t_w: float, t_f: float, r: float) -> Numbers:
+    """A, I and W_pl of an I-section with fillets of radius r between web and flanges."""
     clear = h - 2.0 * t_f
     corner = (1.0 - math.pi / 4.0) * r**2  # each of four fillets: a square less a quarter of a disc
     centre = (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi) * r  # of it, from the flange
@@ -76,40 +78,44 @@ def rolled(h: float, b: float, t_w: float, t_f: float, r: float) -> tuple[float,
     arm = 0.5 * clear - centre
     area = 2.0 * b * t_f + clear * t_w + 4.0 * corner
     second = (b * h**3 - (b - t_w) * clear**3) / 12.0 + 4.0 * (own + corner * arm**2)
-    return area, second
+    return area, second, (b * h**2 - (b - t_w) * clear**2) / 4.0 + 4.0 * corner * arm
 
 
-def tube(d: float, t: float) -> tuple[float, float]:
-    """A and I of a circular hollow section."""
+def tube(d: float, t: float) -> Numbers:
+    """A, I and W_pl of a circular hollow section."""
     inner = d - 2.0 * t
-    return math.pi / 4.0 * (d**2 - inner**2), math.pi / 64.0 * (d**4 - inner**4)
+    return math.pi / 4.0 * (d**2 - inner**2), math.pi / 64.0 * (d**4 - inner**4), (d**3 - inner**3) / 6.0
 
 
-def box(b: float, t: float) -> tuple[float, float]:
-    """A and I of a square hollow section, with corners of radius 1.5 t outside and t inside.
+def box(b: float, t: float) -> Numbers:
+    """A, I and W_pl of a square hollow section, with corners of radius 1.5 t outside and t inside.
 
     Corners are cut away as the fillets of an I-section without flanges are added.
     """
     c = b - 2.0 * t
     parts = rectangle(b, b), rolled(b, 0.0, 0.0, 0.0, 1.5 * t), rectangle(c, c), rolled(c, 0.0, 0.0, 0.0, t)
-    area, second = ((outer - cut) - (inner - left) for outer, cut, inner, left in zip(*parts, strict=True))
-    return area, second
+    area, second, plastic = (
+        (outer - cut) - (inner - left) for outer, cut, inner, left in zip(*parts, strict=True)
+    )
+    return area, second, plastic
 
 
-def rectangle(b: float, h: float) -> tuple[float, float]:
-    """A and I of a solid rectangle."""
-    return b * h, b * h**3 / 12.0
+def rectangle(b: float, h: float) -> Numbers:
+    """A, I and W_pl of a solid rectangle."""
+    return b * h, b * h**3 / 12.0, b * h**2 / 4.0
 
 
-_SHAPES: dict[str, Callable[..., tuple[float, float]]] = {"I": rolled, "tube": tube, "box": box}
+_SHAPES: dict[str, Callable[..., Numbers]] = {"I": rolled, "tube": tube, "box": box}
 
 
 # --- by name ---------------------------------------------------------------------------------------------
 
 
-def _section(name: str, in_mm: tuple[float, float], depth: float) -> Section:
-    area, second = in_mm
-    return Section(name, float(f"{area * 1e-6:.6g}"), float(f"{second * 1e-12:.6g}"), 1e-3 * depth)
+def _section(name: str, in_mm: Numbers, depth: float) -> Section:
+    area, second, plastic = (
+        float(f"{value * unit:.6g}") for value, unit in zip(in_mm, (1e-6, 1e-12, 1e-9), strict=True)
+    )
+    return Section(name, area, second, plastic, 1e-3 * depth)
 
 
 _HELD = json.loads((Path(__file__).parents[1] / "assets" / "sections.json").read_text(encoding="utf-8"))
@@ -189,6 +195,8 @@ def given_by(section: str | None = None, material: str | None = None) -> dict[st
         found |= {"youngs_modulus": substance.youngs_modulus, "thermal_expansion": substance.expansion}
         if profile is not None:
             found |= by_area(substance, profile.area)
+            ductile = substance.tension == substance.compression  # metals
+            found["plastic_moment"] = _tidy(substance.tension * profile.plastic_modulus) if ductile else None
     return found
 
 

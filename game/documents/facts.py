@@ -15,6 +15,8 @@ from pinjoint.components.field import MADE, SAVED, Column, Field
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
+from pinjoint.components.rod import Rod
+from pinjoint.components.section import NAMES, given_by
 from pinjoint.components.world import called
 from pinjoint.documents.format import (
     FOREIGN,
@@ -97,10 +99,20 @@ class _FactsOfKind:
                 if field.component:
                     one = one.setdefault(FOREIGN, {}).setdefault(field.component, {})
                 one[field.key] = value
+        if self.kind is Rod:
+            self._state_against_names(elements)
         for row, data in self.foreign.items():
             kept = elements[row].get(FOREIGN, {}) | copied(data, self._called(row))
             elements[row][FOREIGN] = dict(sorted(kept.items()))
         return elements
+
+    def _state_against_names(self, elements: list[dict[str, Any]]) -> None:
+        """State what is as by default, too, where the section and material of a rod would give another number."""
+        defaults = {field.key: field.default for field, _ in self.columns}
+        for one in (one for one in elements if not one.keys().isdisjoint(NAMES)):
+            given = given_by(one.get("section"), one.get("material"))
+            stated = {key: defaults[key] for key, value in given.items() if value != defaults[key]}
+            one.update({key: value for key, value in stated.items() if key not in one})
 
     def _refuse_non_finite(self, field: Field[Any], column: Column) -> None:
         if field.dtype is not float:

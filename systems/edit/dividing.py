@@ -29,7 +29,7 @@ DIVISIONS = {
 }  # titles of what menus offer, by the number of parts
 # Half a rod has half of the first and twice the others; sliders that move these move the first part only.
 _WITH_LENGTH, _AGAINST_LENGTH = ("prescribed_rest_length",), ("damping", "bending_damping")
-_OF_ENDS = "hinged", "end_springs"
+_OF_ENDS = "hinged", "end_springs", "plastic_rotation"
 
 Numbers = NDArray[np.float64]
 

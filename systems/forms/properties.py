@@ -38,7 +38,8 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
     marked("Section and material"): (
         *(Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment),
         *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.density, Rod.thermal_expansion),
-        *(Rod.tensile_strength, Rod.compressive_strength, Rod.tension_only, Rod.inextensible),
+        *(Rod.tensile_strength, Rod.compressive_strength, Rod.plastic_moment),
+        *(Rod.tension_only, Rod.inextensible),
     ),
     marked("Supports and joints"): (
         *(Particle.fixed, Particle.fixed_rotation, Particle.support_angle, Particle.support_springs),
@@ -52,7 +53,7 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
     marked("Motion and contact"): (
         *(Particle.displacement, Particle.rotation, Particle.velocity, Particle.angular_velocity),
         *(Particle.prescribed_mass, Particle.prescribed_inertia, Particle.radius),
-        *(Rod.damping, Rod.bending_damping, Rod.plastic_strain),
+        *(Rod.damping, Rod.bending_damping, Rod.plastic_strain, Rod.plastic_rotation),
     ),
     marked("All rods"): (
         *(Settings.theory, Settings.opens_in, Settings.original_diagrams, Settings.diagrams),
@@ -61,6 +62,7 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
 }
 _OF_BENDING = (  # what means nothing to rods that do not bend, and where none turns a particle
     *(Rod.hinged, Rod.end_springs, Rod.temperature_gradient, Rod.bending_damping),
+    *(Rod.plastic_moment, Rod.plastic_rotation),
     *(Load.moment, Particle.moment),
     *(Particle.rotation, Particle.angular_velocity, Particle.fixed_rotation, Particle.rotation_spring),
     Particle.prescribed_inertia,

@@ -15,7 +15,7 @@ import numpy as np
 
 from pinjoint.components.model import Model
 from pinjoint.components.particle import is_sprung
-from pinjoint.components.rod import bears_between, bends, is_warm, is_warped, turned_between
+from pinjoint.components.rod import AT_STRENGTH, bears_between, bends, is_warm, is_warped, turned_between
 from pinjoint.systems import is_ours
 from pinjoint.systems.base import MOST_PARTS, REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
 from pinjoint.systems.collision.driven.columns import Order, Real, Whole
@@ -80,8 +80,6 @@ NO_POWER = tuple(f"power_{name} = 0.0" for name in ACCOUNTS)
 POWER_RETURNED = tuple(f"power[Account.{name.upper()}] = power_{name}" for name in ACCOUNTS)
 
 # -------------------------------------------------------------------------------------------------
-
-_AT_STRENGTH = 1.0 - 1e-9  # share of its strength from which on a rod is said to yield
 
 FEW, MANY, VERY_MANY = "few", "many", "very many"  # rods: what is quickest for some is not for others
 BLOCKS_FROM = 20_000  # rods: below, cores wait for each other longer than they help
@@ -724,7 +722,7 @@ class Writer:
         return lines
 
     def _observe(self) -> str:
-        observed = self.lines(rods.observed, at_strength=str(_AT_STRENGTH), moments=self.end_moments())
+        observed = self.lines(rods.observed, at_strength=str(AT_STRENGTH), moments=self.end_moments())
         loop = RodLoop(self.shift, [*self.geometry(), *self._axial_force(), *observed])
         return self.function(observing.observe, "entered", rods=loop.one_by_one())
 

@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 67_901,
-    "files": 378,
-    "names": 3_751,  # functions, classes and constants of modules
-    "public names": 2_215,
-    "numbers": 1_479,  # other than 0, 1 and 2, in constants and defaults
+    "lines": 68_113,
+    "files": 379,
+    "names": 3_763,  # functions, classes and constants of modules
+    "public names": 2_226,
+    "numbers": 1_482,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 55_327,
+    "lines of tests": 55_538,
 }
 
 

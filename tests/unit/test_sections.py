@@ -15,26 +15,26 @@ from pinjoint.documents.format import ModelError
 from pinjoint.paths import PathError, apply_override
 from tests.reference.models import model, particle, rod
 
-# A (cm²) and I (cm⁴) as ArcelorMittal's and Tata's catalogues print them.
+# A (cm²), I (cm⁴) and W_pl (cm³) as ArcelorMittal's and Tata's catalogues print them.
 CATALOGUE = {
-    "IPE 80": (7.64, 80.1),
-    "IPE 200": (28.5, 1943),
-    "IPE 300": (53.8, 8356),
-    "IPE 450": (98.8, 33740),
-    "IPE 600": (156.0, 92080),
-    "HEA 100": (21.2, 349.2),
-    "HEA 200": (53.8, 3692),
-    "HEA 300": (112.5, 18260),
-    "HEA 700": (260.5, 215300),
-    "HEA 1000": (346.8, 553800),
-    "HEB 100": (26.0, 449.5),
-    "HEB 200": (78.1, 5696),
-    "HEB 400": (197.8, 57680),
-    "HEB 1000": (400.0, 644700),
-    "CHS 60.3×4": (7.07, 28.2),
-    "CHS 219.1×8": (53.1, 2960),
-    "SHS 60×5": (10.7, 53.3),
-    "SHS 200×10": (74.9, 4471),
+    "IPE 80": (7.64, 80.1, 23.2),
+    "IPE 200": (28.5, 1943, 220.6),
+    "IPE 300": (53.8, 8356, 628.4),
+    "IPE 450": (98.8, 33740, 1702),
+    "IPE 600": (156.0, 92080, 3512),
+    "HEA 100": (21.2, 349.2, 83.0),
+    "HEA 200": (53.8, 3692, 429.5),
+    "HEA 300": (112.5, 18260, 1383),
+    "HEA 700": (260.5, 215300, 7032),
+    "HEA 1000": (346.8, 553800, 12820),
+    "HEB 100": (26.0, 449.5, 104.2),
+    "HEB 200": (78.1, 5696, 642.5),
+    "HEB 400": (197.8, 57680, 3232),
+    "HEB 1000": (400.0, 644700, 14860),
+    "CHS 60.3×4": (7.07, 28.2, 12.7),
+    "CHS 219.1×8": (53.1, 2960, 357),
+    "SHS 60×5": (10.7, 53.3, 21.9),
+    "SHS 200×10": (74.9, 4471, 531),
 }
 
 
@@ -42,7 +42,7 @@ CATALOGUE = {
 def test_properties_are_those_of_catalogues(name: str) -> None:
     found = Section.named(name)
     assert found is not None
-    shown = found.area * 1e4, found.second_moment * 1e8
+    shown = found.area * 1e4, found.second_moment * 1e8, found.plastic_modulus * 1e6
     assert shown == pytest.approx(CATALOGUE[name], rel=3e-3), "which print three digits"
 
 
@@ -74,6 +74,7 @@ def test_a_file_may_say_no_more_than_the_names() -> None:
     assert made.bending_stiffness == pytest.approx(210e6 * 1943.17e-8)
     assert made.density == pytest.approx(22.36, abs=0.01)
     assert made.tensile_strength == pytest.approx(235e3 * 28.4841e-4)
+    assert made.plastic_moment == pytest.approx(235e3 * 220.6e-6, rel=1e-3)
     assert made.hinged == (False, False)
 
 
@@ -98,6 +99,7 @@ def test_choosing_a_section_is_one_edit_and_leaves_the_joints_as_they_are() -> N
     made.material = "timber C24"
     assert made.bending_stiffness == pytest.approx(11e6 * 5696e-8, rel=1e-3)
     assert made.tensile_strength == pytest.approx(14.5e3 * 78.1e-4, rel=1e-3)
+    assert made.plastic_moment is None, "timber is brittle"
     session.undo()
     assert made.material == "S235"
     session.undo()

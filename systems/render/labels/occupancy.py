@@ -93,16 +93,17 @@ class Occupancy:
             start, end, strength, code = start[near], end[near], strength[near], code[near]
         dx, dy = (end - start).T / self.cell
         count = np.maximum(np.abs(dx), np.abs(dy)).astype(np.intp) + 2
-        step, scale = ranges(np.zeros_like(count), count), 1.0 / (count - 1)
+        line, step = np.repeat(np.arange(len(count)), count), ranges(np.zeros_like(count), count)
         columns, rows = (
-            (np.repeat(first / self.cell, count) + step * np.repeat(way * scale, count)).astype(np.intp)
+            ((first / self.cell).take(line) + step * (way / (count - 1)).take(line)).astype(np.intp)
             for first, way in ((start[:, 0] - left, dx), (start[:, 1] - top, dy))
         )
         height, width = self._lined.shape
         ok = (rows >= 0) & (columns >= 0) & (rows < height) & (columns < width)
-        cells, code = (rows * width + columns)[ok], np.repeat(code, count)[ok]
-        self._lined.ravel()[cells] = np.repeat(strength, count)[ok]
-        self._owner.ravel()[cells[code != NOBODY]] = code[code != NOBODY]
+        cells, line = (rows * width + columns)[ok], line[ok]
+        self._lined.ravel()[cells] = strength.take(line)
+        whose = code.take(line)
+        self._owner.ravel()[cells[whose != NOBODY]] = whose[whose != NOBODY]
 
     def crossed(self, left: float, top: float, width: float, height: float) -> int:
         """How much of a rectangle is taken or crossed by lines, in cells."""
@@ -121,10 +122,14 @@ class Occupancy:
                 [not blocked[top:low, left:right].any() for left, top, right, low in cells.tolist()], bool
             )
         left, top, right, bottom = cells.T
-        # How many are above and to the left of each corner.
-        before = np.zeros((height + 1, width + 1), dtype=np.int32)
-        blocked.cumsum(axis=0, dtype=np.int32).cumsum(axis=1, out=before[1:, 1:])
-        free: Truths = before[bottom, right] - before[top, right] == before[bottom, left] - before[top, left]
+        before = np.zeros(
+            (height + 1, width + 1), dtype=np.int32
+        )  # how many are above and to the left of each corner
+        blocked.cumsum(axis=1, dtype=np.int32, out=before[1:, 1:])
+        for above, row in pairwise(before):  # in half the time of a sum along columns
+            row += above
+        high, low = ([before.take(y * (width + 1) + x) for x in (left, right)] for y in (top, bottom))
+        free: Truths = low[1] - high[1] == low[0] - high[0]
         return free
 
     def may_be_of(self, cells: Rows, *owners: Codes) -> Truths:

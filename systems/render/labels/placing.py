@@ -418,7 +418,10 @@ def _meet_nothing(start: Points, end: Points, own: Codes, kin: Codes, occupancy:
     share = (ranges(np.zeros_like(count), count) / np.repeat(count, count))[:, None]
     points = end[line] + share * (start[line] - end[line])
     rows, columns = occupancy.cell_of(points).T
+    meets = np.zeros(len(start), dtype=bool)
+    meets[line[occupancy.taken[rows, columns]]] = True
+    points, line = points[~meets[line]], line[~meets[line]]
     limits = np.array([_HALF, -1.0, _HALF])[:, None] * unit * np.ones(len(line))
     boxes = Boxes(points, np.full(points.shape, _HALF * unit), line)
-    clear = ~occupancy.taken[rows, columns] & occupancy.parts.are_clear(boxes, own, kin, limits)
-    return np.setdiff1d(np.arange(len(start)), line[~clear])
+    meets[line[~occupancy.parts.are_clear(boxes, own, kin, limits)]] = True
+    return np.flatnonzero(~meets)

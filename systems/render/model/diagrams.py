@@ -410,11 +410,12 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
         places = _places_by_curves(at, normal, along, height, inward, half, sheet.unit)
         anchors = _ends_of_lines(sheet, diagram, which, shares[shown], number)
         worth = worth + np.where(np.abs(value) > _GREAT * diagram.largest, 2e9, 0.0)  # before arrows
-    for k, row in enumerate(diagram.rows[which].tolist()):
-        of, key, rank = ("rods", row), (field, int(keys[shown[k]])), -float(worth[k])
-        sign = "zero" if abs(value[k]) <= SMALLEST else "tension" if value[k] > 0.0 else "compression"
+    columns = (column.tolist() for column in (diagram.rows[which], keys[shown], worth, value))
+    for k, (row, number_of, most, force) in enumerate(zip(*columns, strict=True)):
+        of, key, rank = ("rods", row), (field, number_of), -most
+        sign = "zero" if abs(force) <= SMALLEST else "tension" if force > 0.0 else "compression"
         colour = _colour(sheet, sign) if quantity == AXIAL else sheet.colour_of("text")
-        short = texts[k] if not few else _written(sheet, quantity, float(value[k]), nothing, few=False)
+        short = texts[k] if not few else _written(sheet, quantity, force, nothing, few=False)
         write(
             sheet,
             texts[k],

@@ -1,0 +1,134 @@
+"""Plastic hinges: ends of rods turn beyond what is elastic, so that no moment passes the plastic moment.
+
+With slopes φ, axial force N and elastic matrix A = K + N L₀ B the moments are A (φ − x) + c; the slips x of the ends solve
+|M| ≤ M_p, x = 0 where less, x having the sign of M: a linear complementarity problem of two ends. N follows from the bow of
+what stays elastic, b = ½ (φ − x)ᵀ B (φ − x), which falls as N grows: one equation with one root. M_p does not depend on N.
+"""
+
+import math
+
+from pinjoint.systems.program.kernel import compiled
+
+CLOSE = 2e-16  # share of EA × strains below which axial forces do not differ
+MOST_TRIALS = 50  # of the axial force; more would not tell its last bits
+FIRM = (
+    -11.0
+)  # N L₀²/EI from which on A counts as it is there: at −12 the rod buckles within itself, and A is singular
+
+
+@compiled
+def slips(moment_start, moment_end, thrust, rods_end_stiffness, rods_bowing, rods_moment_limit):
+    """How far the ends of a rod slip (rad), given the moments that they had without, and thrust = N L₀.
+
+    Of neither, one and both ends slipping, one case agrees with its own moments: that which rounding spoils least.
+    """
+    limit_start, limit_end = rods_moment_limit
+    if abs(moment_start) <= limit_start and abs(moment_end) <= limit_end:
+        return 0.0, 0.0
+    start = rods_end_stiffness[0] + thrust * rods_bowing[0]
+    mixed = rods_end_stiffness[1] + thrust * rods_bowing[1]
+    end = rods_end_stiffness[2] + thrust * rods_bowing[2]
+    least, slip_start, slip_end = math.inf, 0.0, 0.0
+    if abs(moment_start) > limit_start:
+        slip = (moment_start - math.copysign(limit_start, moment_start)) / start
+        least, slip_start = abs(moment_end - mixed * slip) - limit_end, slip
+    if abs(moment_end) > limit_end and least > 0.0:
+        slip = (moment_end - math.copysign(limit_end, moment_end)) / end
+        wrong = abs(moment_start - mixed * slip) - limit_start
+        if wrong < least:
+            least, slip_start, slip_end = wrong, 0.0, slip
+    if least > 0.0 and limit_start < math.inf and limit_end < math.inf:
+        rest = start * end - mixed * mixed
+        for case in range(4):
+            sign_start, sign_end = 1.0 - 2.0 * (case % 2), 1.0 - 2.0 * (case // 2)
+            over_start, over_end = moment_start - sign_start * limit_start, moment_end - sign_end * limit_end
+            one = (end * over_start - mixed * over_end) / rest
+            other = (start * over_end - mixed * over_start) / rest
+            wrong = max(-sign_start * one * start, -sign_end * other * end)
+            if wrong < least:
+                least, slip_start, slip_end = wrong, one, other
+    return slip_start, slip_end
+
+
+@compiled
+def softening(thrust, bow_start, bow_end, slip_start, slip_end, rods_end_stiffness, rods_bowing):
+    """By how much the bow falls as thrust grows while ends slip: −∂b/∂(N L₀) = wᵀ A⁻¹ w of these, w = B (φ − x)."""
+    start = rods_end_stiffness[0] + thrust * rods_bowing[0]
+    mixed = rods_end_stiffness[1] + thrust * rods_bowing[1]
+    end = rods_end_stiffness[2] + thrust * rods_bowing[2]
+    if slip_start != 0.0 and slip_end != 0.0:
+        above = end * bow_start * bow_start - 2.0 * mixed * bow_start * bow_end + start * bow_end * bow_end
+        return above / (start * end - mixed * mixed)
+    if slip_start != 0.0:
+        return bow_start * bow_start / start
+    return bow_end * bow_end / end if slip_end != 0.0 else 0.0
+
+
+@compiled
+def narrowed(force, missed, steepness, low, high):
+    """The next axial force to try, and the bounds between which it must be.
+
+    missed: by how much an axial force is more than what follows from it, which grows at least as fast as it. steepness: how
+    fast.
+    """
+    low, high = (low, force) if missed > 0.0 else (force, high)
+    nearer = force - missed / steepness
+    if not low < nearer < high:
+        nearer = 0.5 * (max(low, force - abs(missed)) + min(high, force + abs(missed)))
+    return nearer, low, high
+
+
+@compiled
+def slipped(
+    elongation,
+    slope_start,
+    slope_end,
+    load_start,
+    load_end,
+    rods_stiffness,
+    rods_rest_length,
+    rods_plastic_strain,
+    rods_tension_limit,
+    rods_compression_limit,
+    rods_bending_stiffness,
+    rods_end_stiffness,
+    rods_initial_slopes,
+    rods_bowing,
+    rods_moment_limit,
+):
+    """Slips of both ends (rad) and axial force (kN) of an elastic, perfectly plastic rod; the moments are M(φ − x).
+
+    elongation: of the chord. slopes: of its joints, less plastic rotations. load_start, load_end: moments by what acts
+    between the ends.
+    """
+    bow_start = rods_bowing[0] * slope_start + rods_bowing[1] * slope_end
+    bow_end = rods_bowing[1] * slope_start + rods_bowing[2] * slope_end
+    by_start, by_end = slope_start - rods_initial_slopes[0], slope_end - rods_initial_slopes[1]
+    bent_start = rods_end_stiffness[0] * by_start + rods_end_stiffness[1] * by_end + load_start
+    bent_end = rods_end_stiffness[1] * by_start + rods_end_stiffness[2] * by_end + load_end
+    firm = FIRM * rods_bending_stiffness / rods_rest_length
+    strain = elongation / rods_rest_length - rods_plastic_strain
+    bow = 0.5 * (slope_start * bow_start + slope_end * bow_end)
+    force = min(max(rods_stiffness * (strain + bow), -rods_compression_limit), rods_tension_limit)
+    found, low, high = force, -math.inf, math.inf
+    slip_start = slip_end = 0.0
+    for _ in range(MOST_TRIALS):
+        thrust = max(force * rods_rest_length, firm)
+        moment_start, moment_end = bent_start + thrust * bow_start, bent_end + thrust * bow_end
+        slip_start, slip_end = slips(
+            moment_start, moment_end, thrust, rods_end_stiffness, rods_bowing, rods_moment_limit
+        )
+        at_start, at_end = slope_start - slip_start, slope_end - slip_end
+        left_start = rods_bowing[0] * at_start + rods_bowing[1] * at_end
+        left_end = rods_bowing[1] * at_start + rods_bowing[2] * at_end
+        bow = 0.5 * (at_start * left_start + at_end * left_end)
+        elastic = rods_stiffness * (strain + bow)
+        found = min(max(elastic, -rods_compression_limit), rods_tension_limit)
+        missed = force - found
+        softer = softening(thrust, left_start, left_end, slip_start, slip_end, rods_end_stiffness, rods_bowing)
+        steepness = 1.0 + rods_stiffness * rods_rest_length * softer * (found == elastic and thrust > firm)
+        nearer, low, high = narrowed(force, missed, steepness, low, high)
+        if abs(missed) <= CLOSE * rods_stiffness * (abs(strain) + bow) or nearer == force:
+            break
+        force = nearer
+    return slip_start, slip_end, found
