@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -76,14 +77,7 @@ class Assessment:
         begun = self._begun
         revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
         if self._theories is None or self._theories[0] != revision:
-            start = None
-            if begun:
-                names = ("rods.plastic_strain", "rods.plastic_rotation")
-                permanent = np.column_stack([begun.column(self._model, name) for name in names])
-                moved = (
-                    begun.column(self._model, f"particles.{name}").copy() for name in ("displacement", "rotation")
-                )
-                start = Start(*moved, permanent)
+            start = Start.of(partial(begun.column, self._model)) if begun else None
             self._theories = revision, Theories.of(self._model, start)
         return self._theories[1]
 

@@ -56,9 +56,9 @@ class Step:
 class Statics:
     """The static solution of a model: a function of its document, by the theory and load steps of its settings.
 
-    permanent: plastic strain and rotations of its undeformed beginning, (rods, 3). settlement: the way through the load steps; None where none
-    can be computed, which `problem` explains. motion: into which its last state passes, where that is no equilibrium.
-    revision: at which it was found. offered: that of which a person was told that it would not move.
+    permanent: plastic strain and rotations of its undeformed beginning, (rods, 3). settlement: the way through the load
+    steps; None where none can be computed, which `problem` explains. motion: into which its last state passes, where that
+    is no equilibrium. revision: at which it was found. offered: that of which a person was told that it would not move.
     """
 
     def __init__(self, model: Model, permanent: Callable[[], Column]) -> None:

@@ -249,8 +249,10 @@ def flows(stiffness: Array, excess: Array, flowing: Flags) -> Array:
 
     stiffness: moments by both slopes, (rods, 2, 2). excess: (rods, 2, …).
     """
+    own = stiffness[:, [0, 1], [0, 1]]
+    flowing = flowing & (own != 0.0)
     mixed = np.where(flowing.all(axis=1), stiffness[:, 0, 1], 0.0)[:, None, None]
-    own = np.where(flowing, stiffness[:, [0, 1], [0, 1]], 1.0)[:, :, None]
+    own = np.where(flowing, own, 1.0)[:, :, None]
     given = np.where(flowing[:, :, None], excess.reshape(*flowing.shape, -1), 0.0)
     across = own[:, ::-1] * given - mixed * given[:, ::-1]
     found: Array = (across / (own[:, :1] * own[:, 1:] - mixed * mixed)).reshape(excess.shape)

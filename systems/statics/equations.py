@@ -68,12 +68,12 @@ def upright(motion: Array) -> Array:
 
 def of_axes(values: NDArray[Any]) -> NDArray[Any]:
     """Of what can yield, (rods,) or with both ends (rods, 3), that of the axes, (rods,)."""
-    return values if values.ndim == 1 else values[:, 0]
+    return values if np.ndim(values) < 2 else values[:, 0]
 
 
 def of_rods(flags: Flags) -> Flags:
     """Of flags of what can yield, rods of which any part has one, (rods,)."""
-    return flags if flags.ndim == 1 else flags.any(axis=1)
+    return flags if flags.ndim == 1 else flags[:, 0] | flags[:, 1] | flags[:, 2]
 
 
 @dataclass(frozen=True)
@@ -86,9 +86,9 @@ class Response:
     members bend; None where none do. share: of the distributed forces that acts. spring_force: what holds particles against
     elastic supports, (n, …).
 
-    Where ends yield, as plastic hinges, what can yield is (rods, 3), of the axis and of both ends: elastic_force (of ends
-    moments, kN·m, as if only the other end yielded), plastic_strain (rotations, rad), flowing, slack and round_off; and tied:
-    ends that flow, too, but count as if they did not, so that something holds their joints.
+    Where ends yield, as plastic hinges, these are (rods, 3), of the axis and of both ends: elastic_force (of ends moments,
+    kN·m, as if only the other end yielded), plastic_strain (rotations, rad), flowing, slack, round_off, and tied: ends that
+    flow, too, but count as if they did not, so that something holds their joints.
     """
 
     elongation: Array
@@ -468,7 +468,9 @@ class Structure:
         by_ends = hessian[:, [0, 2, 3]] @ np.concatenate([chord, slopes], axis=1)
         rod, part = np.nonzero(parts)
         matrix = np.zeros((len(rod), *self.unknown.shape))
-        of_ends = self._by_supports(by_ends[rod, part][:, None], self.ends[rod])[:, 0].reshape(-1, 2, self.width)
+        of_ends = self._by_supports(by_ends[rod, part][:, None], self.ends[rod])[:, 0].reshape(
+            -1, 2, self.width
+        )
         for end in range(2):
             matrix[np.arange(len(rod)), self.ends[rod, end]] = of_ends[:, end]
         place = np.array([0, 2, 3])[part]
@@ -552,7 +554,7 @@ class Structure:
         if self.bending is not None:
             slopes = self.turns(displacement) - self.chords(displacement)[:, None]
             slopes = np.where(self.bending.rigid, slopes, 0.0)
-            if plastic_strain.ndim > 1:
+            if self.ends_yield:
                 slopes = slopes - plastic_strain[:, 1:]
                 turned, flows_there = self._turned_in_hinges(elongation, slopes, axis, permanent, share, piece)
                 slopes = slopes - turned
@@ -587,9 +589,17 @@ class Structure:
         elastic = self.stiffness * (strain - permanent)
         if piece is not None:
             slack = piece.slack[:, 0]
-            return elastic, slack, np.where(slack, 0.0, np.where(piece.flowing[:, 0], piece.edge[:, 0], elastic))
+            return (
+                elastic,
+                slack,
+                np.where(slack, 0.0, np.where(piece.flowing[:, 0], piece.edge[:, 0], elastic)),
+            )
         slack = self.sense * elastic < 0.0
-        return elastic, slack, np.where(slack, 0.0, np.clip(elastic, -self.compression_limit, self.tension_limit))
+        return (
+            elastic,
+            slack,
+            np.where(slack, 0.0, np.clip(elastic, -self.compression_limit, self.tension_limit)),
+        )
 
     # --- plastic hinges ------------------------------------------------------------------------------
 
@@ -612,8 +622,8 @@ class Structure:
     ) -> tuple[Array, Flags]:
         """By how much ends turn in plastic hinges, (rods, 2), and which do; slopes: if none did.
 
-        stretch: of the chords, with misfit. The axial force of a rod whose ends flow follows from its bow, which follows from
-        the force: Newton's method, within what it has found the answer to be between.
+        stretch: of the chords, with misfit. The axial force of a rod whose ends flow follows from its bow, and this from the
+        force: Newton's method, within what it has found the answer to be between.
         """
         bending = self.bending
         assert bending is not None

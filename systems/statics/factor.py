@@ -136,8 +136,7 @@ def is_held(model: Model, *, at_first: bool = False) -> bool:
     particles, rods = model.particles, model.rods
     structure = replace(Structure.of(model).with_translations(), sparse=False)
     place = structure.field(particles.displacement, particles.rotation)
-    permanent = np.column_stack([rods.plastic_strain, rods.plastic_rotation])
-    response = structure.respond(place, permanent, 1.0)
+    response = structure.respond(place, np.column_stack([rods.plastic_strain, rods.plastic_rotation]), 1.0)
     soft = rods.yielding | (rods.tension_only & (rods.axial_force <= 0.0))
     if structure.ends_yield:
         hinges = structure.untied(rods.hinge_yielding, np.abs(rods.plastic_rotation))

@@ -266,7 +266,9 @@ class Path:
         if chosen is not None:
             giving = self._giving(limited, matrix, excess, chosen)
             found = self._direction(response, branches, giving, onward)
-            if giving.ndim > 1 and not self._agrees(response, branches, found):  # all ends at some joint have to
+            if giving.ndim > 1 and not self._agrees(
+                response, branches, found
+            ):  # all ends at some joint have to
                 limited[limited] = chosen
                 found = self._direction(response, branches, limited, onward)
             return found

@@ -129,10 +129,11 @@ class Loading:
 
     def _note_yields(self, tangent: Tangent, found: Point, following: Tangent) -> None:
         """Report the rods that begin to yield."""
-        whole, t = (found.response.flowing | following.flowing) & ~tangent.flowing, found.t
-        if whole.ndim > 1:
-            self._note_hinges(whole[:, 1:], tangent, following, t)
-        new = of_axes(whole)
+        new, t = of_axes((found.response.flowing | following.flowing) & ~tangent.flowing), found.t
+        if tangent.flowing.ndim > 1:
+            self._note_hinges(
+                tangent.flowing[:, 1:], found.response.flowing[:, 1:], following.flowing[:, 1:], t
+            )
         if not new.any():
             return
         force = found.response.axial_force
@@ -149,11 +150,12 @@ class Loading:
         ]
         self._tell("yield", t, joined(said), new)
 
-    def _note_hinges(self, new: Flags, before: Tangent, following: Tangent, t: float) -> None:
-        """Report the plastic hinges that form, but not that of ends at one joint another flows in place of the first."""
+    def _note_hinges(self, before: Flags, meanwhile: Flags, following: Flags, t: float) -> None:
+        """Report the plastic hinges that form, (rods, 2), but not that of ends at one joint another turns instead."""
         ends, names = self.path.structure.ends, self.model.rods.names
-        left = np.unique(ends[(before.flowing & ~following.flowing)[:, 1:]])
-        for row, end in np.argwhere(new & ~np.isin(ends, left)).tolist():
+        new = following & ~before & ~np.isin(ends, ends[before & ~following])
+        new |= meanwhile & ~before & ~np.isin(ends, ends[before | following])
+        for row, end in np.argwhere(new).tolist():
             particle = self.model.particles.names[ends[row, end]]
             message = tr(
                 "A plastic hinge forms at {particle}, in {rod}, {at}.",
@@ -181,23 +183,24 @@ class Loading:
         structure = self.path.structure
         if self.mechanism or not (following.flowing & ~tangent.flowing).any():
             return
-        shape = structure.unmoved if structure.ends_yield else self.point.response  # a slack catenary is no frame
-        matrix = structure.tangent(shape, following.soft, geometric=False)
-        if regular(matrix, structure.weight, -SOFT).definite:
+        if not self._is_plastic_mechanism(following):
             return
         self.mechanism = True
         motion = structure.spread(following.rate)
-        hinges = hinges_named(self.model, following.flowing)
-        message = tr(
-            "Plastic mechanism {at}, the collapse load of textbooks: with plastic hinges {hinges} nothing resists moving"
-            " {motion}. Beyond it only large changes of shape carry more."
-            if hinges
-            else "Plastic mechanism {at}, the collapse load of textbooks: so many rods yield that the others do not resist"
-            " moving {motion}. Beyond it only large changes of shape carry more.",
-            at=self._at(self.point.t),
-            motion=describe_motion(self.model, motion[None]),
-            hinges=hinges,
-        )
+        told = {"at": self._at(self.point.t), "motion": describe_motion(self.model, motion[None])}
+        if hinges := hinges_named(self.model, following.flowing):
+            message = tr(
+                "Plastic mechanism {at}, the collapse load of textbooks: with plastic hinges {hinges} nothing resists moving"
+                " {motion}. Beyond it only large changes of shape carry more.",
+                hinges=hinges,
+                **told,
+            )
+        else:
+            message = tr(
+                "Plastic mechanism {at}, the collapse load of textbooks: so many rods yield that the others do not resist"
+                " moving {motion}. Beyond it only large changes of shape carry more.",
+                **told,
+            )
         self._tell("plastic mechanism", self.point.t, message, following.flowing, motion)
 
     # --- loss of stability -----------------------------------------------------------------------------
@@ -208,7 +211,7 @@ class Loading:
         structure = path.structure
         plastic = bool(beyond.flowing.any()) and is_stable(path.structure, critical.response, beyond.slack)
         mode = self._mode(beyond)
-        if plastic and structure.first_order and beyond.flowing.ndim > 1 and self._gives_way(beyond):
+        if plastic and structure.ends_yield and self._is_plastic_mechanism(beyond):
             raise self._collapse(beyond.flowing, structure.spread(mode))
         if self.mechanism and critical.t < FIRST_LOAD and not plastic:
             self._relax(FIRST_LOAD, mode)
@@ -221,10 +224,12 @@ class Loading:
             self._leap()
         return path.tangent(self.point)
 
-    def _gives_way(self, tangent: Tangent) -> bool:
-        """True if only round-off resists some motion while so much yields."""
+    def _is_plastic_mechanism(self, tangent: Tangent) -> bool:
+        """True if nothing but round-off, forces in a changing shape and their turning resists some motion: with plastic
+        hinges in the original shape, to which textbooks hold."""
         structure = self.path.structure
-        matrix = structure.tangent(self.point.response, tangent.soft)
+        shape = structure.unmoved if structure.ends_yield else self.point.response
+        matrix = structure.tangent(shape, tangent.soft, geometric=False)
         return not regular(matrix, structure.weight, -SOFT).definite
 
     def _pass(self, critical: Point, beyond: Tangent, mode: Array, plastic: bool) -> None:
@@ -317,8 +322,8 @@ class Loading:
         )
         if hinges:
             message = tr(
-                "Plastic collapse {at}: with plastic hinges {hinges} nothing resists moving {motion} any more. Lower the load"
-                " or strengthen the members there.",
+                "Plastic collapse {at}: with plastic hinges {hinges} nothing resists moving {motion} any more. Lower the"
+                " load or strengthen the members there.",
                 at=self._at(self.point.t),
                 hinges=hinges,
                 motion=describe_motion(self.model, motion[None]),

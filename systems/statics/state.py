@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -171,10 +171,15 @@ class Start:
     @classmethod
     def present(cls, model: Model) -> Start:
         """A model's present state, or the solution that it shows."""
-        particles, rods = model.particles, model.rods
-        permanent = np.column_stack([rods.plastic_strain, rods.plastic_rotation])
         factor = 1.0 if model.solution is None else model.settings.load_steps[-1]
-        return cls(particles.displacement.copy(), particles.rotation.copy(), permanent, load_factor=factor)
+        return cls.of(model.column, factor)
+
+    @classmethod
+    def of(cls, column: Callable[[str], NDArray[Any]], load_factor: float = 1.0) -> Start:
+        """The state in which columns are, by "table.field"."""
+        strain, turned = column("rods.plastic_strain"), column("rods.plastic_rotation")
+        moved, rotation = (column(f"particles.{name}").copy() for name in ("displacement", "rotation"))
+        return cls(moved, rotation, np.column_stack([strain, turned]), load_factor=load_factor)
 
     @classmethod
     def undeformed(cls, model: Model, permanent: Array) -> Start:

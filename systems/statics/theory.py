@@ -11,7 +11,15 @@ import numpy as np
 from pinjoint.components.language import begun, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.theory import FIRST_ORDER
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised, of_axes
+from pinjoint.systems.statics.equations import (
+    ROUND_OFF,
+    Array,
+    Response,
+    Structure,
+    largest,
+    normalised,
+    of_axes,
+)
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External, loose_bodies

@@ -1,8 +1,9 @@
 """Frames with plastic hinges by first-order theory, from event to event, slow and obvious.
 
 Between events a frame is linear: ends that flow are hinges in `frame_theory`, and bars that yield bear a constant force. At
-an event choices are tried of those at their strengths, those first that change least, so that of ends at one joint one flows
-unless all must. Only the load is scaled; what else acts (warmth, lack of fit, settled supports) is there from the beginning.
+an event choices are tried of those at their strengths, those first that differ least from what flowed before or from
+nothing, so that of ends at one joint one flows unless all must. Only the load is scaled; what else acts (warmth, lack of
+fit, settled supports) is there from the beginning.
 """
 
 from dataclasses import dataclass, field
@@ -15,6 +16,7 @@ from tests.reference import frame_theory
 
 Document = dict[str, Any]
 AT_LIMIT = 1e-10  # of a strength
+AT_ONCE = 3  # so many begin to flow at most, or cease to while others go on
 SINGULAR = 1e12  # condition number, of a scaled matrix
 NONE = 1e-8  # of the largest rate: a smaller one is round-off
 LOADS = ("force", "moment", "distributed_force", "more_at_end")
@@ -78,12 +80,13 @@ class Frame:
 
     def _rates(self, sense: float) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
         """Rates of the efforts, flows and displacements by the load factor; None where nothing is in equilibrium."""
-        side = (self.effort >= self.high * (1.0 - AT_LIMIT)) * 1.0 - (self.effort <= self.low * (1.0 - AT_LIMIT))
+        side = (self.effort >= self.high * (1.0 - AT_LIMIT)) * 1.0 - (
+            self.effort <= self.low * (1.0 - AT_LIMIT)
+        )
         limited = [(int(row), int(part)) for row, part in np.argwhere(side)]
-        kept = self.flowing & set(limited)
-        changes = chain.from_iterable(combinations(limited, count) for count in range(len(limited) + 1))
-        for change in changes:
-            chosen = kept.symmetric_difference(change)
+        kept: tuple[set[tuple[int, int]], ...] = (self.flowing & set(limited), set())
+        changes = chain.from_iterable(combinations(limited, count) for count in range(AT_ONCE + 1))
+        for chosen in (before.symmetric_difference(change) for change in changes for before in kept):
             by_rod: dict[int, set[int]] = {}
             for row, part in chosen:
                 by_rod.setdefault(row, set()).add(part)

@@ -18,9 +18,9 @@ SEEDS = st.integers(0, 2**31)
 
 
 def hinged_frame(seed: int) -> Document:
-    """A frame of storeys and bays that yields at its ends, with loads on joints, in the middle of beams and along members."""
+    """A frame of storeys and bays that yields at its ends, with loads on joints, inside beams and along members."""
     lot = np.random.default_rng(seed)
-    bays, storeys = int(lot.integers(1, 3)), int(lot.integers(1, 4))
+    bays, storeys = int(lot.integers(1, 3)), int(lot.integers(1, 3))
     particles: list[Document] = []
     rods: list[Document] = []
     same = {"stiffness": 1e6, "bending_stiffness": 1e4, "plastic_moment": 100.0}
@@ -51,7 +51,9 @@ def hinged_frame(seed: int) -> Document:
         for bay in range(bays):
             middle, weight = f"M{floor}{bay}", float(lot.uniform(0.0, 8.0) * (lot.random() < 0.4))
             push = [0.0, -float(lot.uniform(10.0, 60.0))]
-            particles.append(free(middle, 6.0 * bay + float(lot.choice([2.0, 3.0, 3.7])), 4.0 * floor, force=push))
+            particles.append(
+                free(middle, 6.0 * bay + float(lot.choice([2.0, 3.0, 3.7])), 4.0 * floor, force=push)
+            )
             join(f"P{floor}{bay}", middle, weight)
             join(middle, f"P{floor}{bay + 1}", weight)
     return model(particles, rods)
@@ -71,7 +73,7 @@ def same_hinges(found: Settlement, frame: Frame, within: float) -> None:
         assert any(n == name and f == pytest.approx(factor, rel=within) for f, n in told), (name, told, wanted)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(seed=SEEDS)
 def test_frames_up_to_collapse_from_event_to_event(seed: int) -> None:
     document = hinged_frame(seed)
@@ -84,7 +86,7 @@ def test_frames_up_to_collapse_from_event_to_event(seed: int) -> None:
     same_hinges(found, frame, 1e-9)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(seed=SEEDS, share=st.floats(0.5, 1.05))
 def test_load_steps_leave_the_residual_moments_of_theory(seed: int, share: float) -> None:
     document = hinged_frame(seed)
