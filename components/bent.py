@@ -21,6 +21,7 @@ from pinjoint.components.derived import (
     rigid_slopes,
 )
 from pinjoint.components.model import Model
+from pinjoint.components.rod import has_struts
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.spans import Curves, Kinks, Stretches, extremes
 
@@ -31,6 +32,7 @@ AXIAL, MOMENT, SHEAR = DIAGRAMS
 FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn of it
 _MOST_PIECES = 32  # of a drawn rod
 _LARGEST = 1e6  # pieces that a rod would have to be cut into; such are left out
+_HALF_SINE = 3.2 * np.array([0.0, 1.0, 0.0, -2.0, 1.0])  # sin πξ, but for 0.001
 _STEEP, _STEEPEST = 0.05, 2.5  # rad, slopes from which on tangents are drawn truly, and up to which
 
 
@@ -266,6 +268,8 @@ def _found(model: Model) -> tuple[_State, Kinks]:
     slopes = all_slopes(rods, rigid, on_axis(between.on_clamped(rods.rest_length), along)[1])
     slopes = np.where((rods.bending_stiffness > 0.0)[:, None], length[:, None] * slopes, 0.0)
     bow = between.sags(left, rods.rest_length, rods.bending_stiffness).plus(cubic(*slopes.T))
+    if has_struts(model):
+        bow = bow.plus(np.outer(rods.lateral_deflection, _HALF_SINE))
     return _State(length, left, slopes, bow), between
 
 

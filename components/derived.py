@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pinjoint.components.cases import SOURCES, factor_of_each, permanent
 from pinjoint.components.field import Column, Field
 from pinjoint.components.load import SpanLoad, varying
 from pinjoint.components.particle import DEFAULT_MASS
-from pinjoint.components.rod import AT_STRENGTH, DEFAULT_STIFFNESS
+from pinjoint.components.rod import AT_STRENGTH, DEFAULT_STIFFNESS, euler_load
 from pinjoint.components.section import Section
 from pinjoint.components.spans import Curves, Kinks
 from pinjoint.components.table import Table
@@ -21,6 +22,7 @@ from pinjoint.components.world import Derivation, World
 # What acts between the ends of rods, and where.
 _BETWEEN = " ".join(
     [
+        SOURCES,
         *(f"rods.{name}" for name in ("distributed_force", "rest_length", "original_length")),
         *(f"span_loads.{field.name}" for field in vars(SpanLoad).values() if isinstance(field, Field)),
     ]
@@ -42,11 +44,12 @@ def _or_automatic(prescribed: Column, automatic: ArrayLike) -> Column:
 
 @derives(
     "rods",
-    "difference original_length rest_length misfit",
-    "between prescribed_rest_length temperature_change thermal_expansion particles.position",
+    "difference original_length rest_length misfit free_curvature",
+    "between prescribed_rest_length temperature_change temperature_gradient thermal_expansion particles.position"
+    f" span_loads.rod span_loads.temperature_change span_loads.temperature_gradient {SOURCES}",
 )
 def lengths(world: World) -> None:
-    """Original difference and length of every rod, its rest length, and its misfit at its temperature."""
+    """Original difference and length of every rod, its rest length, and its misfit and curvature at its temperature."""
     rods = world.tables["rods"]
     position = world.tables["particles"].position
     ends = rods.between
@@ -56,8 +59,22 @@ def lengths(world: World) -> None:
     original[...] = np.hypot(difference[:, 0], difference[:, 1])
     rest = world.writable("rods.rest_length")
     rest[...] = _or_automatic(rods.prescribed_rest_length, original)
-    thermal_strain = rods.thermal_expansion * rods.temperature_change
-    world.writable("rods.misfit")[...] = original - rest * (1.0 + thermal_strain)
+    (own, by_loads), (gradient, more) = (
+        _warmth(world, "temperature_change"),
+        _warmth(world, "temperature_gradient"),
+    )
+    thermal_strain = rods.thermal_expansion * own
+    misfit = world.writable("rods.misfit")
+    misfit[...] = permanent(world) * (original - rest * (1.0 + thermal_strain))
+    misfit -= rest * rods.thermal_expansion * by_loads
+    world.writable("rods.free_curvature")[...] = -rods.thermal_expansion * (permanent(world) * gradient + more)
+
+
+def _warmth(world: World, name: str) -> tuple[Column, Column]:
+    """What a temperature of rods is by their own Fields, and by loads of all cases, (rods,)."""
+    rods, loads = world.tables["rods"], world.tables["span_loads"]
+    more = factor_of_each(world, "span_loads") * loads.column(name)
+    return rods.column(name), np.bincount(loads.rod, more, rods.count)
 
 
 @derives(
@@ -107,8 +124,7 @@ def masses(world: World) -> None:
 @derives(
     "rods",
     "end_stiffness end_damping initial_slopes bowing turning_shares fixity",
-    "bending_stiffness stiffness rest_length hinged end_springs damping bending_damping thermal_expansion"
-    " temperature_gradient",
+    "bending_stiffness stiffness rest_length hinged end_springs damping bending_damping free_curvature",
 )
 def bending(world: World) -> None:
     """What the ends of each rod feel, by their joints: coefficients of slopes, all zero where nothing bends.
@@ -129,7 +145,7 @@ def bending(world: World) -> None:
         world.writable("rods.end_stiffness")[...] = (stiffness / length)[:, None] * per_slope
         damping = _or_automatic(rods.bending_damping, rods.damping * stiffness / rods.stiffness)
         world.writable("rods.end_damping")[...] = damping[:, None] * per_slope
-        half = -0.5 * rods.thermal_expansion * rods.temperature_gradient * length
+        half = 0.5 * rods.free_curvature * length
         world.writable("rods.initial_slopes")[...] = half[:, None] * (fixity > 0.0) * [-1.0, 1.0] + 0.0
     for name, values in of_ends.items():
         world.writable(f"rods.{name}")[...] = values
@@ -221,14 +237,39 @@ def inertias(world: World) -> None:
         world.writable("particles.turning")[...] = np.where(free, 1000.0 / inertia, 0.0)
 
 
-@derives("rods", "tension_limit compression_limit", "tensile_strength compressive_strength tension_only")
+@derives("rods", "buckling_load", "buckles bending_stiffness rest_length fixity tension_only inextensible")
+def buckling_loads(world: World) -> None:
+    """P of struts, infinite of other rods."""
+    rods, load = world.tables["rods"], world.writable("rods.buckling_load")
+    load[...] = np.where(rods.buckles, euler_load(world), np.inf) if rods.buckles.any() else np.inf
+
+
+@derives("rods", "lateral_deflection", "buckling_load stiffness rest_length strain plastic_strain")
+def lateral_deflections(world: World) -> None:
+    """Amplitude (2L₀/π) √r of the half sine of struts, r being what of their shortening is not elastic."""
+    rods, found = world.tables["rods"], world.writable("rods.lateral_deflection")
+    found[...] = amplitude(rods, rods.strain, rods.plastic_strain)
+
+
+def amplitude(rods: Table[Any], strain: Column, plastic_strain: Column) -> Column:
+    """That at these strains, (rods,)."""
+    nearer = plastic_strain - strain - rods.buckling_load / rods.stiffness
+    return 2.0 / math.pi * rods.rest_length * np.sqrt(np.maximum(nearer, 0.0))
+
+
+@derives(
+    "rods",
+    "tension_limit compression_limit",
+    "tensile_strength compressive_strength tension_only buckling_load",
+)
 def limits(world: World) -> None:
-    """Strengths with "unlimited" (None or 0) as infinity; a cable goes slack before any compression."""
+    """Strengths with "unlimited" (None or 0) as infinity; cables slacken, and slender struts buckle, before they yield."""
     for direction, name in (("tension", "tensile"), ("compression", "compressive")):
         values = world.tables["rods"].column(f"{name}_strength")
         unlimited = np.isnan(values) | (values == 0.0)
         world.writable(f"rods.{direction}_limit")[...] = np.where(unlimited, np.inf, values)
-    world.writable("rods.compression_limit")[world.tables["rods"].tension_only] = np.inf
+    rods, limit = world.tables["rods"], world.writable("rods.compression_limit")
+    limit[rods.tension_only | (rods.buckling_load < limit)] = np.inf
 
 
 @derives("rods", "moment_limit", "plastic_moment fixity")
@@ -261,19 +302,21 @@ def constant_forces(world: World) -> None:
     with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
         acceleration = particles.acceleration + environment.acceleration
         force = particles.force + environment.force + particles.mass[:, None] * acceleration / 1000.0
-        np.add.at(force, loads.on[constant], loads.force[constant])
+        force *= permanent(world)
+        by_case = factor_of_each(world, "loads")[:, None]
+        np.add.at(force, loads.on[constant], (by_case * loads.force)[constant])
         if len((between := Kinks.of(world)).row):
             np.add.at(force, rods.between.ravel(), between.on_ends(rods.count).reshape(-1, 2))
     world.writable("particles.constant_force")[...] = force
 
 
-@derives("particles", "constant_moment", "moment loads.on loads.moment loads.history")
+@derives("particles", "constant_moment", f"moment loads.on loads.moment loads.history {SOURCES}")
 def constant_moments(world: World) -> None:
     """Own moment and that of constant loads (kN·m)."""
     loads = world.tables["loads"]
     constant, moment = ~varying(loads), world.writable("particles.constant_moment")
-    moment[...] = world.tables["particles"].moment
-    np.add.at(moment, loads.on[constant], loads.moment[constant])
+    moment[...] = permanent(world) * world.tables["particles"].moment
+    np.add.at(moment, loads.on[constant], (factor_of_each(world, "loads") * loads.moment)[constant])
 
 
 @derives("settings", "displacement_scale", "prescribed_displacement_scale automatic_displacement_scale")
@@ -313,8 +356,7 @@ def with_full_turns(chord: Column, turning_shares: Column, rotation: Column) -> 
     "rods",
     "end_axial_force shear bending_moment end_rotation largest_moment",
     "particles.displacement particles.rotation between difference axial_force end_moment turning_shares"
-    " plastic_rotation"
-    f" {_BETWEEN} span_load bending_stiffness thermal_expansion temperature_gradient",
+    f" plastic_rotation {_BETWEEN} span_load bending_stiffness free_curvature",
 )
 def present_diagrams(world: World) -> None:
     """Axial force, shear and bending moment at both ends of every rod, and the rotations of these, in the present state.
@@ -386,7 +428,7 @@ def all_slopes(rods: Table[Any], slopes: Column, load: Column) -> Column:
     length, stiffness = rods.rest_length, rods.bending_stiffness
     bent = stiffness > 0.0
     loaded = np.divide(length, stiffness, out=np.zeros(len(length)), where=bent)[:, None] * load
-    warped = np.where(bent, 0.5 * rods.thermal_expansion * rods.temperature_gradient * length, 0.0)
+    warped = np.where(bent, -0.5 * rods.free_curvature * length, 0.0)
     free = np.array([1.0, -1.0]) * warped[:, None] + loaded / 3.0 - loaded[:, ::-1] / 6.0  # between hinges
     own = own_slopes(rods.fixity)
     found: Column = np.einsum("rij,rj->ri", own, slopes) + np.einsum("rij,rj->ri", np.eye(2) - own, free)

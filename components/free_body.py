@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.bent import borne_between, is_frame
+from pinjoint.components.cases import permanent
 from pinjoint.components.derived import chord_rotation, on_joints
 from pinjoint.components.language import tr
 from pinjoint.components.load import factor_now
@@ -143,12 +144,21 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
     loads, rest = model.loads, applied.copy()
     turns = bool(rigid_joints(model)[row])
     for k in np.flatnonzero(loads.on == row).tolist():
-        now = factor_now(model, loads.history[k]) * np.append(loads.force[k], loads.moment[k])
+        now = factor_now(model, loads[k]) * np.append(loads.force[k], loads.moment[k])
         rest -= now
         x, y, turn = now.tolist()
         found.append(Force(model.describe(loads[k]), "load", x, y, k, turn * turns))
-    weight = particles.mass[row] * (particles.acceleration[row] + environment.acceleration) / 1000.0
-    own = model.share * np.append(particles.force[row] + environment.force, particles.moment[row])
+    weight = (
+        permanent(model)
+        * particles.mass[row]
+        * (particles.acceleration[row] + environment.acceleration)
+        / 1000.0
+    )
+    own = (
+        model.share
+        * permanent(model)
+        * np.append(particles.force[row] + environment.force, particles.moment[row])
+    )
     for name, part in ((tr("force"), own), (tr("weight"), np.append(weight, 0.0))):
         rest -= part
         if (part * [1.0, 1.0, turns]).any():

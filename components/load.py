@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pkgutil import resolve_name
 from types import MappingProxyType
 from typing import Any
@@ -12,8 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.cases import PERMANENT, check_case, factor_of_each
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import CM, LARGEST, Field, FieldError, Vector
+from pinjoint.components.field import CM, LARGEST, MOVED, Field, FieldError, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import marked, tr
 from pinjoint.components.particle import Particle
@@ -133,8 +135,19 @@ HISTORIES["ramp"] = HistoryKind(
 CONSTANT = check_history({"kind": "constant"}, "load")
 
 
+# Of the loads that act together, which combinations multiply by a factor.
+_CASE = partial(
+    Field,
+    dtype=str,
+    title=marked("case"),
+    default=PERMANENT,
+    checker=check_case,
+    doc=marked("The case that it is of, such as wind or snow."),
+)
+
+
 class Load(Handle):
-    """A force on one particle, multiplied by a history of time; several may act on the same particle."""
+    """A force on one particle, multiplied by a history of time, or a settlement of its support; several may act there."""
 
     __slots__ = ()
     table, noun = "loads", "load"
@@ -159,6 +172,16 @@ class Load(Handle):
         doc="How the load changes in time: its factor multiplies force and moment.",
         checker=check_history,
     )
+    case: Field[str] = _CASE()
+    settlement: Field[Vector] = Field(
+        "m",
+        shape=(2,),
+        doc="How far it moves the rigid support of the particle, in directions that are constrained; in statics.",
+        shown=MOVED,
+    )
+    settled_rotation: Field[float] = Field(
+        "rad", doc="By how much it turns the clamp of the particle, counter-clockwise; in statics."
+    )
 
     @property
     def particle(self) -> Particle:
@@ -168,7 +191,7 @@ class Load(Handle):
 
 
 class SpanLoad(Handle):
-    """What acts between the ends of a rod: a force and a moment at a place, and a force distributed from there on.
+    """What acts between the ends of a rod: a force and a moment at a place, a force distributed from there on, warmth.
 
     Several may act on a rod. Forces keep their directions while it moves, and act per original length.
     """
@@ -212,6 +235,11 @@ class SpanLoad(Handle):
         default=DIRECTIONS[0],
         choices=DIRECTIONS,
         doc="Of forces: global, x to the right and y up, or local, x along the undeformed rod and y to its left.",
+    )
+    case: Field[str] = _CASE()
+    temperature_change: Field[float] = Field("K", doc="How much warmer it makes the whole rod, which expands.")
+    temperature_gradient: Field[float] = Field(
+        "K/m", doc="How much warmer it makes the whole rod per metre of depth towards its left side."
     )
 
     @classmethod
@@ -267,11 +295,12 @@ def static_factor(history: History) -> float:
     return static(history) if callable(static) else static
 
 
-def factor_now(world: World, history: History) -> float:
-    """The factor of a history in what columns show: at the time of the run, or in statics."""
+def factor_now(world: World, load: Load) -> float:
+    """The factor of a load in what columns show, by its history at the time of the run or in statics, and by its case."""
+    by_case = float(factor_of_each(world, load.table)[load.row])
     if world.solution is not None:
-        return world.solution.share * static_factor(history)
-    return factor_at(history, float(world.tables["clock"].time[0]))
+        return by_case * world.solution.share * static_factor(load.history)
+    return by_case * factor_at(load.history, float(world.tables["clock"].time[0]))
 
 
 def load_ends(world: World) -> list[float]:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from pinjoint.components.clock import Clock
+from pinjoint.components.commands import Assign
 from pinjoint.components.derived import DERIVATIONS
 from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.field import MADE
 from pinjoint.components.grid import Grid
 from pinjoint.components.load import Load, SpanLoad
-from pinjoint.components.particle import Particle
+from pinjoint.components.particle import Particle, of_rigid_supports
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import Environment, Settings
 from pinjoint.components.slider import Slider
@@ -58,6 +62,23 @@ class Model(World):
         self.foreign_kinds: dict[str, Any] = {}
         self.foreign_versions: dict[str, str] = {}
         self.sliders: tuple[Slider, ...] = ()
+
+    def undeformed_copy(self) -> Model:
+        """The same document at the beginning of time: only moved supports are displaced, and rods strained for good."""
+        copy = Model()
+        for name, table in self.tables.items():
+            kept = [field.name for field in table.fields_in(*MADE)] + ["plastic_strain"] * (name == "rods")
+            columns = {field: table.column(field) for field in kept}
+            if name == "particles":
+                columns["displacement"] = of_rigid_supports(self, table.storage("displacement"))
+                columns["rotation"] = np.where(table.fixed_rotation, table.storage("rotation"), 0.0)
+            if table.kind.single:
+                [one] = copy.tables[name]
+                for field, column in columns.items():
+                    copy.apply(Assign(name, field, (one.entity,), column))
+            else:
+                copy.create(table.kind, table.count, **columns)
+        return copy
 
     def __repr__(self) -> str:
         counts = ", ".join(

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.cases import permanent
 from pinjoint.components.field import (
     CM,
     ENDS,
@@ -145,6 +146,12 @@ class Rod(Handle):
         dtype=bool,
         doc="In first-order theory it keeps its length, whatever EA is, and does not yield; elsewhere it has its EA.",
     )
+    buckles: Field[bool] = Field(
+        dtype=bool,
+        title="strut that buckles",
+        doc="Hinged at both ends, with an EI, it bends aside at P = π² EI/L₀² and then bears P (1 + r/2), r the share of"
+        " its length that its ends come nearer; in first-order theory P. Loads along it and its mass do not count.",
+    )
     prescribed_bending_stiffness: Field[float | None] = Field(
         "kN·m²",
         nullable=True,
@@ -211,6 +218,9 @@ class Rod(Handle):
         doc="Original length − rest length × (1 + thermal strain): its elongation where it was drawn.",
         shown=CM,
     )
+    free_curvature: Field[float] = derived(
+        "1/m", doc="Its curvature without moments, by the temperature gradient."
+    )
     end_stiffness: Field[tuple[float, float, float]] = derived(
         "kN·m",
         shape=(3,),
@@ -250,6 +260,12 @@ class Rod(Handle):
     )
     tension_limit: Field[float] = derived("kN", doc="Tensile strength; infinite if unlimited.")
     compression_limit: Field[float] = derived("kN", doc="Compressive strength; infinite if unlimited.")
+    buckling_load: Field[float] = derived(
+        "kN", doc="P = π² EI/L₀², the compression at which a strut buckles; infinite of other rods."
+    )
+    lateral_deflection: Field[float] = derived(
+        "m", doc="How far a strut that has buckled is bent aside in the middle, (2L₀/π) √r.", shown=CM
+    )
     moment_limit: Field[Vector] = by_end(
         "kN·m", doc="Plastic moment; infinite if unlimited, or where an end turns freely."
     )
@@ -435,8 +451,10 @@ def _check_ends(table: Table[Any], rows: NDArray[np.intp]) -> None:
 
 
 def is_warm(world: World) -> bool:
-    """True if the temperature of some rod has changed."""
-    return bool(world.tables["rods"].temperature_change.any())
+    """True if rods have another elongation where they were drawn than by their lengths: the temperature of some has changed,
+    or what is permanent acts by another factor than 1."""
+    tables = (world.tables["rods"], world.tables["span_loads"])
+    return any(table.temperature_change.any() for table in tables) or permanent(world) != 1.0
 
 
 def is_warped(world: World) -> bool:
@@ -514,6 +532,33 @@ def has_cables(world: World) -> bool:
     return bool(world.tables["rods"].tension_only.any())
 
 
+def euler_load(world: World) -> NDArray[np.float64]:
+    """π² EI/L₀² of rods with EI that are hinged at both ends, infinite of others, (rods,)."""
+    rods = world.tables["rods"]
+    pinned = (rods.bending_stiffness > 0.0) & ~rods.fixity.any(axis=1) & ~rods.tension_only
+    load: NDArray[np.float64] = np.where(
+        pinned, math.pi**2 * rods.bending_stiffness / rods.rest_length**2, np.inf
+    )
+    return load
+
+
+def has_struts(world: World) -> bool:
+    """True if some rod buckles as a strut."""
+    rods = world.tables["rods"]
+    return bool(rods.buckles.any() and (rods.buckling_load < np.inf).any())
+
+
+def strut_energy(world: World) -> NDArray[np.float64]:
+    """What struts that have buckled store besides N² L₀/2EA (kN·m), by their axial forces, (rods,)."""
+    rods = world.tables["rods"]
+    load, force = rods.buckling_load, rods.axial_force
+    buckled = force < -load
+    beyond = np.where(buckled, force**2 - load**2, 0.0)
+    load = np.where(buckled, load, 1.0)
+    energy: NDArray[np.float64] = rods.rest_length * beyond * (1.0 / load - 0.5 / rods.stiffness)
+    return energy
+
+
 def can_yield(world: World) -> bool:
     """True if plasticity is on and some rod has a strength."""
     return bool(world.tables["settings"].plasticity[0]) and has_strength(world)
@@ -566,7 +611,8 @@ def reduced_plastic_moment(world: World) -> NDArray[np.float64]:
 
 
 def utilisation(world: World) -> NDArray[np.float64]:
-    """The largest stress of each rod, |N|/A + |M|/W, over the yield stress, (rods,); NaN where it has no strength.
+    """The largest stress of each rod, |N|/A + |M|/W, over the yield stress, (rods,); NaN where it has no strength. Of struts
+    at least −N over the buckling load.
 
     Yield stresses are strengths over A, each in its direction. At both ends and where M is largest; of N alone where the
     depth is unknown.
@@ -583,6 +629,9 @@ def utilisation(world: World) -> NDArray[np.float64]:
         bent = lever[:, None] * np.abs(np.column_stack([rods.bending_moment, moment]))
     pulled = (bent + force).max(axis=1) / rods.tension_limit
     pressed = (bent - force).max(axis=1) / rods.compression_limit
-    either = np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)
+    pressed = np.maximum(pressed, -rods.axial_force / rods.buckling_load)
+    either = (
+        np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit) | np.isfinite(rods.buckling_load)
+    )
     found: NDArray[np.float64] = np.where(either, np.maximum(np.maximum(pulled, pressed), 0.0), np.nan)
     return found

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from collections import ChainMap
+from collections.abc import Collection
+from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from pinjoint.components.cases import Combinations, check_combinations
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import LARGEST, Field, FieldError, Vector, derived, if_known, look
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import marked
+from pinjoint.components.language import marked, tr
+from pinjoint.components.table import Table
 from pinjoint.components.theory import FIRST_ORDER, THEORIES
-from pinjoint.components.wording import quoted
+from pinjoint.components.wording import cut, quoted
 
 AUTOMATIC = "automatic"
 NO_DIAGRAMS = "none"
@@ -115,8 +122,35 @@ class Settings(Handle):
         doc="The mode in which a person meets the model: pause, before its motion, or statics, in equilibrium.",
         choices=HUBS,
     )
+    combinations: Field[Combinations] = Field(
+        dtype=object,
+        default=MappingProxyType({}),
+        doc="Factors of load cases by the name of the combination; cases that one leaves out do not act in it.",
+        checker=check_combinations,
+    )
+    combination: Field[str] = Field(
+        dtype=str, doc="The one that acts, of these; none: all load cases, each with the factor 1."
+    )
     automatic_displacement_scale: Field[float] = derived(default=1.0, doc="The scale that suits the model.")
     displacement_scale: Field[float] = derived(default=1.0, doc="As given, or the automatic one.")
+
+    @classmethod
+    def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
+        """The combination that acts is one of those there are; without it all cases act."""
+        settings = table[0]
+        if settings.combination == "" or settings.combination in settings.combinations:
+            return
+        if "combination" not in changed:
+            settings.combination = ""
+            return
+        raise FieldError(
+            "{where}: there is no combination '{name}'; {known}",
+            where=table.world.describe(settings, "combination"),
+            name=cut(settings.combination),
+            known=tr("choose one of {known}.", known=", ".join(settings.combinations))
+            if settings.combinations
+            else tr("the model has none."),
+        )
 
 
 class Environment(Handle):

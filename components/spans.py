@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pinjoint.components.cases import factor_of_each, permanent
 from pinjoint.components.field import Column
 from pinjoint.components.load import DIRECTIONS
 from pinjoint.components.world import World
@@ -98,21 +99,22 @@ class Kinks(NamedTuple):
 
     @classmethod
     def of(cls, world: World, share: float = 1.0) -> Kinks:
-        """Those of a model, of so much of its loads."""
+        """Those of a model, of so much of its loads, each by the factor of its case."""
         rods = world.tables["rods"]
         if not world.tables["span_loads"].count:  # of which nothing needs to be sorted: a third of the time
             own = _pressed(rods.distributed_force)
             size = np.zeros((len(own), 3))
-            size[:, :2] = share * rods.distributed_force[own] * rods.rest_length[own, None]
+            size[:, :2] = share * permanent(world) * rods.distributed_force[own] * rods.rest_length[own, None]
             return cls(own, np.zeros(len(own)), np.zeros_like(own), size, np.full(len(own), -1))
         row, start, end, force, moment, first, last, load = Spans.of(world)
-        per_share = share * rods.rest_length[row, None] * (end > start)[:, None]
+        acts = share * np.append(factor_of_each(world, "span_loads"), permanent(world))[load, None]
+        per_share = acts * rods.rest_length[row, None] * (end > start)[:, None]
         growth = np.divide(
-            last - first, (end - start)[:, None], out=np.zeros_like(first), where=per_share > 0.0
+            last - first, (end - start)[:, None], out=np.zeros_like(first), where=per_share != 0.0
         )
         parts = (
             (-2, start, np.zeros_like(force)),
-            (-1, start, share * force),
+            (-1, start, acts * force),
             (0, start, per_share * first),
             (1, start, per_share * growth),
             (0, end, -per_share * last),
@@ -121,7 +123,7 @@ class Kinks(NamedTuple):
         order = np.repeat([part[0] for part in parts], len(row))
         place = np.concatenate([part[1] for part in parts])
         size = np.pad(np.concatenate([part[2] for part in parts]), ((0, 0), (0, 1)))
-        size[: len(row), 2] = -share * moment
+        size[: len(row), 2] = -acts[:, 0] * moment
         acting = np.flatnonzero(size.any(axis=1) & ((place < 1.0) | (order < 0)))
         whose = acting % max(len(row), 1)
         acting = acting[np.lexsort((order[acting], place[acting], row[whose]))]

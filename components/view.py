@@ -222,6 +222,7 @@ class Shape:
     equilibrium that it leads away from, (n, 2); None: it leads away from the original positions. rotation: (rad), on the
     scale of the displacement, (n,); None: nothing turns. note: a sentence about what it leaves out, or "". parts: what is
     drawn, where rods are divided for it; its places follow the particles in all arrays of the shape. swings: to and fro.
+    values: texts of it, each with its place (m) and how far from there it is drawn.
     """
 
     title: str
@@ -231,6 +232,9 @@ class Shape:
     note: str = field(default="", compare=False)
     parts: Parts | None = field(default=None, compare=False, repr=False)
     swings: bool = True
+    values: tuple[tuple[str, NDArray[np.float64], NDArray[np.float64]], ...] = field(
+        default=(), compare=False, repr=False
+    )
 
 
 @dataclass(frozen=True)

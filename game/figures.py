@@ -15,7 +15,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bends, nodes
 from pinjoint.components.spans import extremes
 from pinjoint.components.tags import DiagramShown
-from pinjoint.components.view import Cut, View
+from pinjoint.components.view import Cut, Shape, View
 from pinjoint.methods.guide import scale_to
 from pinjoint.systems.render.backends.paper import GUTTER, PIXEL, ROOMS, WIDTH, Block, Figure, Layout
 from pinjoint.systems.render.marks import Mark, Strokes, Text
@@ -86,8 +86,9 @@ def figure(
     measured: bool = False,
     moved: bool = False,
     grows: bool = False,
+    over: Shape | None = None,
 ) -> Block:
-    """A picture of a model, with the diagrams of a quantity.
+    """A picture of a model, with the diagrams of a quantity, and a shape over it.
 
     row: how many figures stand in a row; 0: by its shape. unit: pixels per point of its texts. measured: with its
     dimensions and all names. moved: so that displacements are well seen, by which factor the caption says; else undeformed.
@@ -101,7 +102,7 @@ def figure(
         across, tall = ROOMS[wide > high]
         rooms += [(WIDTH, _PART * ROOMS[0][1], _SPARE), (across, tall - _CAPTION, 2.0 * _SPARE)]
     view = View(legend=False, has_scale=False, all_diagrams=diagrams is not None, quantity=diagrams or AXIAL)
-    view.names = measured
+    view.names, view.shape = measured, over
     view.cuts, view.has_units, view.pixel_ratio = tuple(cuts), has_units, unit
     pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
     model.settings.diagram_scale = scale_to(_DIAGRAM, pulled)

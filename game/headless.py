@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from pinjoint.components.cases import choose
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.load import Load, SpanLoad
@@ -228,11 +229,17 @@ class Headless(Context):
         return Curve.of(self.model, goal, points=points, branch=branch, theory=theory)
 
     def statics(
-        self, theory: str | None = None, load_factors: Sequence[float] | float | None = None
+        self,
+        theory: str | None = None,
+        load_factors: Sequence[float] | float | None = None,
+        *,
+        case: str | None = None,
+        combination: str | None = None,
     ) -> Settlement:
         """The equilibria at load factors from the undeformed beginning, by "first-order" or "exact" theory.
 
-        None: as the settings of the model say. Changes nothing. Each of its `states`, of which `final` is the last, has
+        None: as the settings of the model say. case: of which loads act alone. combination: of those of the settings; "":
+        all cases act once. Changes nothing. Each of its `states`, of which `final` is the last, has
         load_factor, status and columns, in order of rows, as `columns["rods.bending_moment"]`: displacement, reaction
         (particles, 2), rotation, reaction_moment (particles,), axial_force, strain, plastic_strain, yielding (rods,), and
         in `diagrams` shear, bending_moment, end_axial_force, end_rotation (rods, 2) and largest_moment, with its place; m,
@@ -244,7 +251,11 @@ class Headless(Context):
         >>> s.statics(load_factors=[1.0, 0.0]).final.axial_force.round(2).tolist()
         [28.7, -40.59, 28.7]
         """
-        return self.document.statics.settled(theory, load_factors)
+        acting = None
+        if case is not None or combination is not None:
+            acting = self.model.undeformed_copy()
+            choose(acting, case, combination)
+        return self.document.statics.settled(theory, load_factors, acting)
 
     def force_method(self, *released: str) -> ForceSolution:
         """The static unknowns of these names, such as "AC", "A.y" or "AB.start", by the force method; changes nothing.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -13,6 +14,7 @@ from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.theory import FIRST_ORDER
+from pinjoint.components.view import Shape
 from pinjoint.documents.models import document, load
 from pinjoint.documents.statics import Statics
 from pinjoint.figures import diagram_titles, figure, printed, shape, signs
@@ -32,10 +34,15 @@ class NoSheet(Mistake, ValueError):
     """A structure without a static solution; the message gives the reason."""
 
 
-def sheet(model: Model, theory: str = FIRST_ORDER) -> bytes:
-    """The sheet of a model, solved from its undeformed beginning, as a PDF file. Raises NoSheet."""
+def sheet(model: Model, theory: str = FIRST_ORDER, shapes: Sequence[Shape] = ()) -> bytes:
+    """The sheet of a model, solved from its undeformed beginning, as a PDF file. Raises NoSheet.
+
+    shapes: drawn over it, too, such as influence lines.
+    """
     solved = Solved(model, theory)
-    return as_paper(solved.title, partial(contents, solved), f"Pinjoint · {solved.title}", LAYOUTS[:2])
+    return as_paper(
+        solved.title, partial(contents, solved, shapes=shapes), f"Pinjoint · {solved.title}", LAYOUTS[:2]
+    )
 
 
 class Solved:
@@ -60,7 +67,7 @@ class Solved:
         self.results = Results.of(copy)
 
 
-def contents(solved: Solved, layout: Layout) -> list[Flowable]:
+def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> list[Flowable]:
     """What the sheet consists of, from the top to the bottom."""
     model, results = solved.model, solved.results
     wide, high = shape(model)
@@ -73,6 +80,7 @@ def contents(solved: Solved, layout: Layout) -> list[Flowable]:
         if bends(model) or quantity == AXIAL:
             figures.append(draw(title, diagrams=quantity))
     figures.append(draw(tr("Deflected shape"), moved=True))
+    figures += [draw(shape.title, over=shape) for shape in shapes]
     large = [block for block in figures if block[1][0].fills_page]
     tables = {
         tr("Rods"): _members(layout, solved),

@@ -189,7 +189,8 @@ class Law(StepSystem):
     branch, margin: of a law of rods, like a commit's.
     potential: of a law of pairs: a kernel that maps `apart` and columns to the energy (kN·m) of which the force is the
         negative gradient. The work of the force is then exact to round-off; else it is summed up step by step. Likewise
-        of a law of ends: a kernel that maps the slopes to the energy stored.
+        of a law of ends: a kernel that maps the slopes to the energy stored; of an elastic law of rods that takes
+        `axial_force`, one that maps its result to what is stored besides N²L₀/2EA.
     """
 
     each: ClassVar[str] = "rods"

@@ -17,7 +17,7 @@ from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, bearing, bends, has_plastic_moments
+from pinjoint.components.rod import Rod, bearing, bends, has_plastic_moments, has_struts
 from pinjoint.components.settings import AUTOMATIC
 from pinjoint.components.table import fields_of
 from pinjoint.components.theory import EXACT
@@ -71,7 +71,8 @@ def reported(model: Model, group: str) -> tuple[Field[Any], ...]:
     fields = model.tables[group].fields.values()
     of_mods = (field for field in fields if field.component and field.dtype in (float, int, bool))
     hinges = _OF_HINGES if group == "rods" and has_plastic_moments(model) else ()
-    return (*_OWN[group], *(_OF_BENDING[group] if bent else ()), *hinges, *of_mods)
+    of_struts = _facts(Rod, "lateral_deflection") if group == "rods" and has_struts(model) else ()
+    return (*_OWN[group], *(_OF_BENDING[group] if bent else ()), *hinges, *of_struts, *of_mods)
 
 
 def facts(

@@ -13,11 +13,13 @@ from pinjoint.commands.influence import NOTHING
 from pinjoint.commands.output import Row, aligned, as_written
 from pinjoint.components.language import decimals, joined, marked, plural, tr
 from pinjoint.components.model import Model
+from pinjoint.components.rod import euler_load
 from pinjoint.headless import Headless
 from pinjoint.systems.base import DEFAULT_LIMIT
 from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.statics.counting import Count
-from pinjoint.systems.statics.explain import describe_motion
+from pinjoint.systems.statics.explain import describe_motion, listed
+from pinjoint.systems.statics.state import StaticState
 from pinjoint.systems.statics.theory import Indeterminacy, mechanisms, self_stress
 from pinjoint.systems.statics.verify import DEPARTURES, ELSEWHERE, QUANTITIES, Comparison, Theories
 from pinjoint.systems.statics.verify import Row as Compared
@@ -78,6 +80,7 @@ def compare(session: Headless, name: str, limit: float | None, *, simulate: bool
         differs = marked("differs from static theory") if departed else NOT_VERIFIED
         agreed = differs if comparison.differs else VERIFIED
         found["status"] = agreed if simulate else marked("theory only")
+    found["compression_members"] = _compression_members(model, theory.exact or theory.linear)
     found["message"] = "\n".join([*_left_out(session), *_messages(found)])
     return found
 
@@ -159,6 +162,22 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
     }
 
 
+def _compression_members(model: Model, state: StaticState | None) -> Found:
+    """The compression of rods between two hinges beside π² EI/L², at which they buckle, by name."""
+    euler, names = euler_load(model), model.rods.names
+    force = np.zeros(model.rods.count) if state is None else state.axial_force
+    pressed = np.flatnonzero((force < 0.0) & np.isfinite(euler))
+    return {
+        names[row]: {
+            "axial_force": float(force[row]),
+            "euler_load": float(euler[row]),
+            "share": float(-force[row] / euler[row]),
+            "buckles": bool(model.rods.buckles[row]),
+        }
+        for row in pressed.tolist()
+    }
+
+
 def _self_stress(model: Model) -> Found:
     """The states of self-stress: axial forces by rod, and where members bend the moments on both ends beside them."""
     states, rods = self_stress(model), model.rods
@@ -187,6 +206,17 @@ def _messages(found: Found) -> Iterator[str]:
             " another, or if the model starts in motion.",
             quantity=Compared(**worst).title,
             error=worst["simulation_error"],
+        )
+    members = found["compression_members"]
+    slender = [name for name, of in members.items() if of["share"] > 1.0 and not of["buckles"]]
+    if slender:
+        yield plural(
+            "Rod {rods} would buckle between its hinges: its compression is above π² EI/L². Let it buckle, divide or"
+            " stiffen it.",
+            "Rods {rods} would buckle between their hinges: their compression is above π² EI/L². Let them buckle, divide or"
+            " stiffen them.",
+            len(slender),
+            rods=listed(slender),
         )
     for way, said in {
         "simulation": marked("Simulation: {message}"),
@@ -272,6 +302,11 @@ def lines(found: Found) -> Iterator[str]:
         if rows:
             yield ""
             yield from aligned(_cells(f"{tr(title)}, {shown}", factor, rows))
+    if members := found["compression_members"]:
+        yield ""
+        heading = [tr("compression members, kN"), "−N", "π² EI/L²", "−N L²/(π² EI)"]
+        given = ([name, -of["axial_force"], of["euler_load"], of["share"]] for name, of in members.items())
+        yield from aligned([heading, *given])
     for way, said in {
         "simulation": marked("largest error of the simulation: {error:.1e}, in the {quantity}"),
         "linear": marked("largest error of linear theory: {error:.1e}, in the {quantity}"),

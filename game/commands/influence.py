@@ -19,17 +19,17 @@ NOTHING = 1e-12  # of the largest value beside it: round-off
 def influence(model: Model, names: Sequence[str], path: Sequence[str] = ()) -> dict[str, Any]:
     """Influence lines by linear theory: the effect of 1 kN along x and y on each particle in turn.
 
-    names: a rod "AB" (its axial force), where it bends "AB.start", "AB.end" (bending moments) or "AB.shear"; a constraint
-    "A.y" or "A.rotation" (its reaction, kN per kN), or a free direction (its displacement, m per kN, by the unit-load
-    method). downwards: the least and the most that one force down does, wherever on a rod of the path it stands, x from its
+    names: a rod "AB" (its axial force), where it bends "AB.start", "AB.end" (bending moments) or "AB.shear", and within it
+    "AB.M@1.5" or "AB.V@50%"; a constraint "A.y" or "A.rotation" (its reaction, kN per kN), or a free direction (its
+    displacement, m per kN, by the unit-load method). downwards: the least and the most that one force down does, wherever
+    on a rod of the path it stands, x from its
     start (m). Raises MethodError for other names, and NoEquilibrium for a mechanism.
     """
     found = {}
-    for name in names:
-        line = Influence.of(model, name)
+    for line in Influence.of(model, *names):
         field = line.field[:, :2]
         cleared = np.where(np.abs(field) > NOTHING * np.abs(field).max(), field, 0.0)
-        found[name] = {
+        found[line.name] = {
             "quantity": line.quantity,
             "unit": line.unit,
             "of": dict(zip(model.particles.names, cleared.tolist(), strict=True)),

@@ -128,7 +128,7 @@ def _parser() -> Parser:
     option(
         shape,
         "--influence NAME",
-        "also draw an influence line: of AB, AB.start, AB.end, AB.shear, A.y or B.rotation",
+        "also draw an influence line: of AB, AB.start, AB.end, AB.shear, AB.M@1.5 (also N, V; 50%), A.y or B.rotation",
     )
     option(parser, "--theme", "the colours; default light", choices=theme_names(), default="light")
     option(
@@ -195,7 +195,7 @@ def _show_shape(session: Session, options: argparse.Namespace) -> None:
     if options.influence is not None:
         from pinjoint.documents.influence import Influence  # it imports scipy
 
-        session.document.shapes.show(Influence.of(session.model, options.influence).shape(session.model))
+        session.document.shapes.show(Influence.of(session.model, options.influence)[0].shape(session.model))
 
 
 def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pinjoint.commands.arguments import Parser, option
-from pinjoint.commands.options import ANSWERED, add_model, add_theory, model_of
+from pinjoint.commands.arguments import Parser, UsageError, option
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, model_of
 from pinjoint.commands.output import writable, write
 from pinjoint.components.theory import FIRST_ORDER
 
@@ -18,8 +18,16 @@ def command(words: Sequence[str]) -> int:
     add_model(parser)
     option(parser, "--output FILE", "the PDF to write", writable, required=True)
     add_theory(parser, FIRST_ORDER)
+    option(parser, "--influence NAME", "draw influence lines, too: see verify --help", nargs="+", default=())
     options = parser.parse_args(words)
-    from pinjoint.sheet import sheet  # it imports reportlab and scipy
+    from pinjoint.documents.influence import Influence  # it imports scipy
+    from pinjoint.sheet import sheet  # it imports reportlab
+    from pinjoint.systems.statics.events import NoEquilibrium
 
-    write(sheet(model_of(options), options.theory), options.output)
+    model = model_of(options)
+    try:
+        lines = Influence.of(model, *options.influence) if options.influence else []
+    except NoEquilibrium as error:
+        raise UsageError(str(error), NOT_ANSWERED) from None
+    write(sheet(model, options.theory, [line.shape(model) for line in lines]), options.output)
     return ANSWERED

@@ -22,7 +22,8 @@ def command(words: Sequence[str]) -> int:
         parser,
         "--influence NAME",
         "print influence lines instead: of the axial force of rod AB; of its moments, AB.start and AB.end, or its"
-        " shear force, AB.shear; of a reaction, A.y or A.rotation; or of a displacement, B.y (unit-load method)",
+        " shear force, AB.shear; of a force within it, AB.M@1.5 (m from its start; N and V, too, and 50%); of a"
+        " reaction, A.y or A.rotation; or of a displacement, B.y (unit-load method)",
         nargs="+",
     )
     option(parser, "--path ROD", "with --influence: the rods along which the force moves; else all", nargs="+")

@@ -77,7 +77,7 @@ class Assessment:
         begun = self._begun
         revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
         if self._theories is None or self._theories[0] != revision:
-            start = Start.of(partial(begun.column, self._model)) if begun else None
+            start = Start.stored(partial(begun.column, self._model)) if begun else None
             self._theories = revision, Theories.of(self._model, start)
         return self._theories[1]
 

@@ -6,15 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pinjoint.components import written
 from pinjoint.components.field import Column, Role
-from pinjoint.components.language import joined, plural, tr
+from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.load import load_factor
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.obstacles import obstacles
-from pinjoint.components.rod import can_yield, has_cables
+from pinjoint.components.rod import can_yield, has_cables, has_struts
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.run.simulation import Simulation
 
@@ -29,8 +30,8 @@ TOLD, MOST_TOLD = 5.0, 2  # s for which a person is told of something, and of ho
 class Happening:
     """Something that happened in a run.
 
-    kind: "yield", "collapse", "snap-through", "slack", "impact", "impacts" (those that are only counted, as of the
-    last), "rest", "diverged", or the name of an event of a mod.
+    kind: "yield", "collapse", "snap-through", "slack", "buckling", "impact", "impacts" (those that are only counted, as of
+    the last), "rest", "diverged", or the name of an event of a mod.
     time: s. message: a sentence. elements: names of those concerned. load_factor: that of the loads then, if they share one.
     """
 
@@ -53,14 +54,17 @@ class Chronicle:
     """What happened in a run so far, without what was taken back.
 
     Yielding, impacts, rest, divergence and events of mods are read from the state, which knows their instants. Cables
-    that go slack, collapses and snap-throughs are found by looking, in a window at every frame: they are dated to the look.
+    that go slack, struts that buckle, collapses and snap-throughs are found by looking, in a window at every frame: they are
+    dated to the look.
     """
 
     def __init__(self, model: Model, simulation: Simulation) -> None:
         self._model, self._simulation = model, simulation
         self._seen: list[Happening] = []
         self._stands = (-1, False)  # revision of the document, and whether it is no mechanism
-        self._slack: frozenset[str] | None = None  # names of cables at the last look
+        self._given: dict[
+            str, frozenset[str]
+        ] = {}  # names of slack cables, and of buckled struts, at the last look
         self._looked = -1.0
         self._yielded: tuple[Column, list[Happening]] = np.empty(0), []
         self._struck: tuple[bytes, list[Happening], int] = b"", [], 0
@@ -85,12 +89,16 @@ class Chronicle:
         model, now = self._model, self._model.clock.time
         if now < self._looked:  # time was taken back
             self._seen = [seen for seen in self._seen if seen.time <= now]
-            self._slack = None
+            self._given.clear()
         if now == self._looked or model.rods.count == 0:
             return
         self._looked = now
+        rods = model.rods
         if has_cables(model):
-            self._look_at_cables()
+            slack = rods.tension_only & (rods.axial_force <= 0.0)
+            self._look_at("slack", slack, marked("Cable {name} goes slack."))
+        if has_struts(model):
+            self._look_at("buckling", rods.axial_force < -rods.buckling_load, marked("Strut {name} buckles."))
         if model.rods.count <= LARGEST:
             self._look_at_stability()
 
@@ -193,13 +201,12 @@ class Chronicle:
         if not any((seen.kind, seen.elements) == (kind, some) for seen in self._seen):
             self._seen.append(self._happening(kind, self._looked if time is None else time, message, some))
 
-    def _look_at_cables(self) -> None:
-        rods = self._model.rods
-        slack = rods.tension_only & (rods.axial_force <= 0.0)
-        names = frozenset(rods.column("name")[slack].tolist())
-        for name in sorted(names - (names if self._slack is None else self._slack)):
-            self._see("slack", tr("Cable {name} goes slack.", name=name), (name,))
-        self._slack = names
+    def _look_at(self, kind: str, given: NDArray[np.bool_], message: str) -> None:
+        """Note the rods that have given way since the last look."""
+        names = frozenset(self._model.rods.column("name")[given].tolist())
+        for name in sorted(names - self._given.get(kind, names)):
+            self._see(kind, tr(message, name=name), (name,))
+        self._given[kind] = names
 
     def _look_at_stability(self) -> None:
         """A structure that is held no more collapses if rods yield on and on; else it snaps through."""

@@ -235,18 +235,19 @@ def _read(model: Model, section: _Section) -> None:
     if kind is Grid:
         _check_grids(section, columns["shown"])
     handles: Sequence[Handle]
-    if kind.single:
-        handles = [model.tables[kind.table][0]]
-        for name, column in columns.items():
-            model.apply(Assign(kind.table, name, (handles[0].entity,), column))
-    else:
-        fields = model.tables[kind.table].fields
-        try:
-            with model.naming(lambda row, field: section.where(row, fields[field].key if field else "")):
+    table = model.tables[kind.table]
+    try:
+        with model.naming(lambda row, field: section.where(row, table.fields[field].key if field else "")):
+            if kind.single:
+                handles = [table[0]]
+                for name, column in columns.items():
+                    model.apply(Assign(kind.table, name, (handles[0].entity,), column))
+                kind.after_change(table, np.array([0]), table.fields)
+            else:
                 handles = model.create(kind, len(section.elements), **columns)
-        except FieldError as error:
-            said = str(error)  # rules of mods need not name the place
-            raise ModelError(said if said.startswith("$") else joined([f"{section.path}:", said])) from None
+    except FieldError as error:
+        said = str(error)  # rules of mods need not name the place
+        raise ModelError(said if said.startswith("$") else joined([f"{section.path}:", said])) from None
     if FOREIGN in section.keys:
         _keep_foreign(model, section, handles)
 

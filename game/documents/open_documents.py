@@ -15,6 +15,7 @@ from pinjoint.components.field import SAVED, Column
 from pinjoint.components.language import joined, plural, tr
 from pinjoint.components.load import load_ends
 from pinjoint.components.model import Model
+from pinjoint.components.particle import of_rigid_supports
 from pinjoint.components.rod import idle_moment
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.documents import models
@@ -186,7 +187,11 @@ class OpenDocument:
 
         self._note_undeformed()
         model, clock = self.model, self.model.clock
-        start = Start.undeformed(model, self._permanent_undeformed()) if anew else Start.present(model)
+        start = Start.present(model)
+        if anew:  # without settlements by loads, which the state would then have twice
+            moved = of_rigid_supports(model, start.displacement)
+            turned = np.where(model.particles.fixed_rotation, start.rotation, 0.0)
+            start = Start(moved, turned, self._permanent_undeformed())
         found = settle(model, factors, start=start)
         with model.transaction("settle"):
             found.final.put(model)

@@ -205,19 +205,28 @@ class Statics:
         )
 
     def settled(
-        self, theory: str | None = None, load_factors: Sequence[float] | float | None = None
+        self,
+        theory: str | None = None,
+        load_factors: Sequence[float] | float | None = None,
+        acting: Model | None = None,
     ) -> Settlement:
-        """The way through load factors by a theory; None: those of the settings. Raises ValueError."""
+        """The way through load factors by a theory; None: those of the settings. Raises ValueError.
+
+        acting: a copy of the model, in which another combination acts.
+        """
         with self._model.own_state():
-            return self._settled(theory, load_factors)
+            return self._settled(theory, load_factors, acting)
 
     def _settled(
-        self, theory: str | None = None, load_factors: Sequence[float] | float | None = None
+        self,
+        theory: str | None = None,
+        load_factors: Sequence[float] | float | None = None,
+        acting: Model | None = None,
     ) -> Settlement:
         from pinjoint.systems.statics.settle import settle
         from pinjoint.systems.statics.state import Start
 
-        model, settings = self._model, self._model.settings
+        model, settings = acting or self._model, self._model.settings
         factors = settings.load_steps if load_factors is None else load_factors
         return settle(model, factors, theory or settings.theory, Start.undeformed(model, self._permanent()))
 

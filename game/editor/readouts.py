@@ -27,6 +27,7 @@ from pinjoint.editor.context import Context
 from pinjoint.paths import ENERGIES
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit.picking import PARTICLE_REACH
+from pinjoint.systems.edit.placing import SNAP_REACH
 from pinjoint.systems.edit.rods import share_at
 from pinjoint.systems.statics.counting import Count
 
@@ -129,6 +130,9 @@ def pin_at(context: Context, hit: Handle | None, pixel: Vector) -> None:
     view, old = context.view, pinned(context)
     view.pin = None
     if isinstance(hit, Rod) and (distance := distance_at(context.model, view, hit, pixel)) is not None:
+        middle = 0.5 * hit.original_length
+        if abs(distance - middle) * view.camera.scale <= SNAP_REACH * view.pixel_ratio:
+            distance = middle
         away = abs(old.distance - distance) if old is not None and old.rod is hit else math.inf
         if away * view.camera.scale > PARTICLE_REACH * view.pixel_ratio:
             view.pin = Pin(hit, distance)

@@ -101,7 +101,7 @@ def _now(model: Model, handle: Handle, field: str) -> str:
     """How much of a load acts now, where that is not all of it."""
     if not isinstance(handle, Load) or field not in (Load.force.name, Load.moment.name):
         return ""
-    factor = factor_now(model, handle.history)
+    factor = factor_now(model, handle)
     if not math.isfinite(factor) or f"{factor:.0%}" == "100%":
         return ""
     return tr("now {share} %", share=f"{100.0 * factor:.0f}".replace("-", "−"))

@@ -142,7 +142,7 @@ def _of_selection(context: Context, pixel: Vector) -> Groups:
         yield ["end springs", *(["split"] if alone else ()), *DIVISIONS.values()]
     if rods:
         release = [("release", marked("release it in the force method"))] if alone else []
-        yield [("toggle cable", marked("cable: tension only")), "toggle inextensible", *release]
+        yield [("toggle cable", marked("cable: tension only")), "toggle strut", "toggle inextensible", *release]
     yield [("copy", marked("copy")), ("duplicate", marked("duplicate")), ("delete", marked("delete"))]
 
 

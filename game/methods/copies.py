@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pinjoint.components.commands import Assign
-from pinjoint.components.field import MADE, Column
+from pinjoint.components.field import Column
 from pinjoint.components.model import Model
-from pinjoint.components.particle import in_support_axes, of_rigid_supports, supported, turned_supports
+from pinjoint.components.particle import in_support_axes, supported, turned_supports
 from pinjoint.components.written import ROUNDING
 from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.external import External
@@ -38,19 +37,7 @@ class _FirstOrder:
 
 def elastic_copy(model: Model) -> Model:
     """The same structure without yielding, at rest at the beginning of time; only moved supports are displaced."""
-    copy = Model()
-    for name, table in model.tables.items():
-        kept = [field.name for field in table.fields_in(*MADE)] + ["plastic_strain"] * (name == "rods")
-        columns = {field: table.column(field) for field in kept}
-        if name == "particles":
-            columns["displacement"] = of_rigid_supports(model, table.displacement)
-            columns["rotation"] = np.where(table.fixed_rotation, table.rotation, 0.0)
-        if table.kind.single:
-            [one] = copy.tables[name]
-            for field, column in columns.items():
-                copy.apply(Assign(name, field, (one.entity,), column))
-        else:
-            copy.create(table.kind, table.count, **columns)
+    copy = model.undeformed_copy()
     copy.settings.plasticity = False
     return copy
 
@@ -71,6 +58,7 @@ def unloaded(model: Model, released: Sequence[Unknown]) -> Model:
     """The released structure under nothing: no loads, lack of fit, warmth or displacements of supports."""
     copy = base_structure(model, released)
     copy.delete([*copy.loads, *copy.span_loads])
+    copy.settings.combination = ""
     for table in map(copy.tables.__getitem__, _ACTING):
         for name in _ACTING[table.name]:
             copy.assign(list(table), name, np.zeros_like(table.column(name)))

@@ -151,6 +151,7 @@ def _let_parts_bear(model: Model, load: SpanLoad, parts: Sequence[Rod], cuts: Nu
     start, end = load.start, cuts[-1] if load.end is None else min(load.end, cuts[-1])
     first, last = np.array([load.start_intensity, load.end_intensity])
     own = max(int(np.searchsorted(cuts[:-1], start, side="right")) - 1, 0)
+    of_all = {name: getattr(load, name) for name in ("case", "temperature_change", "temperature_gradient")}
     made: list[dict[str, Any]] = []
     for number, (part, (low, high)) in enumerate(zip(parts, itertools.pairwise(cuts.tolist()), strict=True)):
         begins, ends, here = max(start, low), min(end, high), number == own
@@ -164,8 +165,16 @@ def _let_parts_bear(model: Model, load: SpanLoad, parts: Sequence[Rod], cuts: Nu
             }
             facts |= {"force": load.force, "moment": load.moment} if here else {}
             facts |= {"start_intensity": values[0], "end_intensity": values[1]} if spread else {}
-            made.append(facts | {"direction": load.direction})
-    none = {"force": (0.0, 0.0), "moment": 0.0, "start_intensity": (0.0, 0.0), "end_intensity": (0.0, 0.0)}
+            made.append(facts | {"direction": load.direction, **of_all})
+        elif load.temperature_change or load.temperature_gradient:
+            made.append({"rod": part.row, **of_all})
+    none = {
+        "start": 0.0,
+        "force": (0.0, 0.0),
+        "moment": 0.0,
+        "start_intensity": (0.0, 0.0),
+        "end_intensity": (0.0, 0.0),
+    }
     for name, value in [("end", None), *(none | made[0]).items()]:
         model.assign([load], name, [value])
     for facts in made[1:]:

@@ -67,9 +67,9 @@ def pick(model: Model, view: View, pixel: Vector) -> Handle | None:
     return pick_particle(model, view, pixel) or pick_line(model, view, pixel)
 
 
-def pick_line(model: Model, view: View, pixel: Vector) -> Handle | None:
-    """The rod, else the element of a mod's kind with points, within reach of a pixel."""
-    return pick_rod(model, view, pixel) or _outlined_at(model, view, pixel)
+def pick_line(model: Model, view: View, pixel: Vector, reach: float = ROD_REACH) -> Handle | None:
+    """The rod, else the element of a mod's kind with points, within reach (points) of a pixel."""
+    return pick_rod(model, view, pixel, reach) or _outlined_at(model, view, pixel, reach)
 
 
 def pick_particle(model: Model, view: View, pixel: Vector) -> Particle | None:
@@ -83,8 +83,8 @@ def pick_particle(model: Model, view: View, pixel: Vector) -> Particle | None:
     return model.particles[nearest] if beyond[nearest] <= 0.0 else None
 
 
-def pick_rod(model: Model, view: View, pixel: Vector) -> Rod | None:
-    """The nearest rod within reach of a pixel, bent ones along their curves."""
+def pick_rod(model: Model, view: View, pixel: Vector, reach: float = ROD_REACH) -> Rod | None:
+    """The nearest rod within reach (points) of a pixel, bent ones along their curves."""
     if model.rods.count == 0:
         return None
     places, at = view.camera.to_pixels(drawn_positions(model)), np.array(pixel)
@@ -95,12 +95,12 @@ def pick_rod(model: Model, view: View, pixel: Vector) -> Rod | None:
         distance[curved.rods] = np.inf
         np.minimum.at(distance, curved.rods, distance_to_segments(at, *ends))
     nearest = int(np.argmin(distance))
-    return model.rods[nearest] if distance[nearest] <= ROD_REACH * view.pixel_ratio else None
+    return model.rods[nearest] if distance[nearest] <= reach * view.pixel_ratio else None
 
 
-def _outlined_at(model: Model, view: View, pixel: Vector) -> Handle | None:
+def _outlined_at(model: Model, view: View, pixel: Vector, reach: float) -> Handle | None:
     """The nearest element, within reach, of a mod's kind with points, seen as the lines through them."""
-    best, found = ROD_REACH * view.pixel_ratio, None
+    best, found = reach * view.pixel_ratio, None
     for table, points in outlines(model):
         places, lines = view.camera.to_pixels(points), max(points.shape[1] - 1, 1)
         ends = places[:, :lines], np.roll(places, -1, axis=1)[:, :lines]

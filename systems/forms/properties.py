@@ -39,7 +39,7 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
         *(Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment),
         *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.density, Rod.thermal_expansion),
         *(Rod.tensile_strength, Rod.compressive_strength, Rod.plastic_moment),
-        *(Rod.tension_only, Rod.inextensible),
+        *(Rod.tension_only, Rod.buckles, Rod.inextensible),
     ),
     marked("Supports and joints"): (
         *(Particle.fixed, Particle.fixed_rotation, Particle.support_angle, Particle.support_springs),
@@ -136,6 +136,7 @@ def _groups(model: Model, section: str, elements: Sequence[Handle]) -> Iterator[
         and (turn or field not in _OF_BENDING)
         and (len(elements) == 1 or field.name != "name")
         and field not in _DECIDED
+        and (field is not Settings.combination or model.settings.combinations)
     ]
     rest = [field for field in wanted if not any(field in group for group in GROUPS.values())]
     for title, group in GROUPS.items():

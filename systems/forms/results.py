@@ -120,6 +120,10 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]:
             yield Reading(SECTION, title, _number(stress[row], stress, "MPa"), told)
         yield _result(tr("length"), _number(length[row], length, CM[0]), Rod.length)
         yield from _at_ends(columns, row)
+        if np.isfinite(rods.buckling_load[row]):
+            load, aside = rods.buckling_load, columns("rods.lateral_deflection") * CM[1]
+            yield _result(tr("buckling load"), _number(load[row], load[row : row + 1], "kN"), Rod.buckling_load)
+            yield _result(tr("lateral deflection"), _number(aside[row], aside, CM[0]), Rod.lateral_deflection)
         if rods.plastic_strain[row]:
             plastic = 1000.0 * rods.plastic_strain
             yield _result(tr("plastic strain"), _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
@@ -159,7 +163,8 @@ def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Reading]:
 def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]:
     """The share of its strength that a rod bears, where it has one; of several the largest."""
     rods = columns.model.rods
-    if not np.isfinite(np.minimum(rods.tension_limit, rods.compression_limit)[rows]).any():
+    limits = [rods.tension_limit, rods.compression_limit, rods.buckling_load]
+    if not np.isfinite(np.min(limits, axis=0)[rows]).any():
         return
     used, text = utilisation(columns.model)[rows] if columns.known else np.full(len(rows), np.nan), "—"
     if not np.isnan(used).all():
@@ -238,8 +243,8 @@ def _of_loads(model: Model, particle: int) -> Iterator[Reading]:
         text = written.stated(load.force, "kN")
         if load.moment:
             text += f", {written.stated(load.moment, 'kN·m')}"
-        if load.history["kind"] != CONSTANT["kind"]:
-            now = factor_now(model, load.history) * model.loads.force[row]
+        if load.history["kind"] != CONSTANT["kind"] or factor_now(model, load) != 1.0:
+            now = factor_now(model, load) * model.loads.force[row]
             text = tr(
                 "{now} of {whole}", now=written.vector(on_screen("kN")[1] * now, written.DIGITS), whole=text
             )

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.cases import factor_of_each
 from pinjoint.components.language import marked
 from pinjoint.components.load import HistoryKind, flattened
 from pinjoint.components.model import Model
@@ -47,11 +48,11 @@ class VaryingLoads(Law):
                 begun[id(history)] = len(values)
                 values += flattened(history[name] for name in self.kind.parameters)
             first.append(begun[id(history)])
-        prefix = self.name.replace(".", "_")
+        prefix, factor = self.name.replace(".", "_"), factor_of_each(model, "loads")[rows]
         return {
-            **({f"{prefix}_moment": np.ascontiguousarray(model.loads.moment[rows])} if bends(model) else {}),
+            **({f"{prefix}_moment": factor * model.loads.moment[rows]} if bends(model) else {}),
             f"{prefix}_on": np.ascontiguousarray(model.loads.on[rows]),
-            f"{prefix}_force": np.ascontiguousarray(model.loads.force[rows]),
+            f"{prefix}_force": factor[:, None] * model.loads.force[rows],
             f"{prefix}_values": np.array(values, dtype=np.float64),
             f"{prefix}_first": np.array(first, dtype=np.uint32),
         }

@@ -68,6 +68,43 @@ def slack_margin(branch, elongation, rods_rest_length, rods_plastic_strain, rods
 
 
 @compiled
+def buckled(axial_force, rods_stiffness, rods_buckling_load):
+    """A strut that is pushed by more than P bears P (1 + r/2): r is what of its shortening is not elastic, over L₀."""
+    beyond = -axial_force - rods_buckling_load
+    return -rods_buckling_load * (1.0 + 0.5 * beyond / rods_stiffness) if beyond > 0.0 else axial_force
+
+
+@compiled
+def buckling_energy(axial_force, rods_stiffness, rods_rest_length, rods_buckling_load):
+    """What a strut that bears P (1 + r/2) stores, L₀ (P²/2EA + P (r + r²/4)), less N² L₀/2EA."""
+    beyond = -axial_force - rods_buckling_load
+    if not beyond > 0.0:
+        return 0.0
+    squares = beyond * (rods_buckling_load - axial_force)  # N² − P²
+    return rods_rest_length * squares * (1.0 / rods_buckling_load - 0.5 / rods_stiffness)
+
+
+@compiled
+def buckling_branch(
+    elongation, rate, rods_stiffness, rods_rest_length, rods_plastic_strain, rods_buckling_load
+):
+    """1: a strut that has buckled or is about to, 0: any other rod."""
+    beyond = rods_plastic_strain - elongation / rods_rest_length - rods_buckling_load / rods_stiffness
+    return 1.0 if beyond > AT_TAUT or (beyond >= -AT_TAUT and rate < 0.0) else 0.0
+
+
+@compiled
+def buckling_margin(
+    branch, elongation, rods_stiffness, rods_rest_length, rods_plastic_strain, rods_buckling_load
+):
+    """Strain up to which a strut stays straight, or bent aside."""
+    if rods_buckling_load == math.inf:
+        return 1.0
+    beyond = rods_plastic_strain - elongation / rods_rest_length - rods_buckling_load / rods_stiffness
+    return beyond if branch != 0.0 else -beyond
+
+
+@compiled
 def bending(slope_start, slope_end, rods_end_stiffness, rods_initial_slopes):
     """End moments of a rod K (φ − φ⁰), K by its hinges, φ⁰ where it is warmer on one side."""
     at_start, at_end = slope_start - rods_initial_slopes[0], slope_end - rods_initial_slopes[1]

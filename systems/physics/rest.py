@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from pinjoint.components.model import Model
 from pinjoint.components.particle import is_sprung, spring_stiffness
+from pinjoint.components.rod import strut_energy
 from pinjoint.systems.islands import Rows
 from pinjoint.systems.physics.bending import bending_energy, bowing_work, levers
 from pinjoint.systems.physics.kernels import LOST_UNSEEN, REST_RESIDUAL, SMALL_SHARE
@@ -58,7 +59,8 @@ class RestMeasure:
             kinetic=0.5 * (particles.mass * (particles.velocity**2).sum(axis=1) + particles.inertia * spin**2),
             load=np.maximum(loaded, np.abs(particles.constant_moment) * lever),
             pull=np.maximum(np.abs(rods.axial_force), bending),
-            elastic=500.0 * rods.axial_force**2 * flexibility + 1000.0 * bending_energy(model),
+            elastic=500.0 * rods.axial_force**2 * flexibility
+            + 1000.0 * (bending_energy(model) + strut_energy(model)),
             round_off=np.finfo(float).eps * (moved / flexibility + firm * rolled),
         )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends, can_yield, has_cables
+from pinjoint.components.rod import bends, can_yield, has_cables, has_struts
 from pinjoint.systems.base import Law
 
 
@@ -65,6 +65,24 @@ class Slackness(Law):
 
     def needs(self, model: Model) -> bool:
         return has_cables(model)
+
+
+class Buckling(Law):
+    """Struts bend aside at Euler's load, and bear little more beyond; integrators that locate events end a step there."""
+
+    name = "physics.buckling"
+    elastic = True
+    unneeded = marked("the model has no struts that buckle")
+    kernel = "pinjoint.systems.physics.kernels:buckled"
+    potential = "pinjoint.systems.physics.kernels:buckling_energy"
+    branch = "pinjoint.systems.physics.kernels:buckling_branch"
+    margin = "pinjoint.systems.physics.kernels:buckling_margin"
+    after = (*Slackness.after, Slackness.name, "plasticity.strength")
+    reads = ("rods.stiffness", "rods.rest_length", "rods.plastic_strain", "rods.buckling_load")
+    adds = ("rods.axial_force",)
+
+    def needs(self, model: Model) -> bool:
+        return has_struts(model)
 
 
 class AxialDampingOfCables(Law):

@@ -31,7 +31,7 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
     "rods": (*_TO_COMMITS, "rate"),
     "particles": ("time", "dt"),
     "pairs": ("apart", "drift", "time", "dt"),
-    "potential": ("apart", "slope_start", "slope_end"),
+    "potential": ("apart", "axial_force", "slope_start", "slope_end"),
     "ends": ("slope_start", "slope_end", "axial_force", "rate_start", "rate_end", "time", "dt"),
     "rotations": ("time", "dt"),
     "commit": _TO_COMMITS,

@@ -175,7 +175,7 @@ class Writer:
         self.names |= {kind.__name__: kind for kind in kinds}
         self.pairs = [*self.of[StepRole.PAIR_FORCE], *self.of[StepRole.PAIR_RESISTANCE]]
         self.ends = [*self.of[StepRole.ENDS], *self.of[StepRole.RATE_OF_ENDS]]
-        could_store = [*self.pairs, *self.of[StepRole.ENDS]]
+        could_store = [*self.pairs, *self.of[StepRole.ENDS], *self.of[StepRole.REPLACING]]
         conservative = [b.system for b in could_store if getattr(b.system, "potential", "")]
         self.potentials = {system.name: bind(system, model, "potential") for system in conservative}
         self.names |= {b.call: b.function for b in self.potentials.values()}
@@ -687,9 +687,15 @@ class Writer:
     # --- reading ----------------------------------------------------------------------------------
 
     def _measure(self) -> str:
-        kept = [self.potentials[b.system.name] for b in self.ends if b.system.name in self.potentials]
-        energies = [f"elastic += 2.0 * {self._apply(b, 'r')}" for b in kept]
-        stored = self.lines(rods.stored, moments=self.end_moments(), energies=energies)
+        of_axes, energies = (
+            [
+                f"elastic += 2.0 * {self._apply(self.potentials[name], 'r')}"
+                for name in names
+                if name in self.potentials
+            ]
+            for names in ([b.system.name for b in laws] for laws in (self.of[StepRole.REPLACING], self.ends))
+        )
+        stored = self.lines(rods.stored, moments=self.end_moments(), of_axes=of_axes, energies=energies)
         compute = [*self.geometry(), *self._axial_force(without=self.working), *stored]
         return self.function(
             observing.measure,

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.form import Form
+from pinjoint.components.load import Load, SpanLoad
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
@@ -42,7 +43,7 @@ from pinjoint.systems.render.model.structure import (
 from pinjoint.systems.render.model.supports import draw_supports, support_sides
 from pinjoint.systems.render.model.tools import draw_flashes, draw_preview
 from pinjoint.systems.render.model.utilisation import shade_rods
-from pinjoint.systems.render.theme import Theme, load_theme
+from pinjoint.systems.render.theme import Colour, Theme, load_theme
 from pinjoint.systems.render.ui.controls import put_controls
 from pinjoint.systems.render.ui.form import compose_form
 from pinjoint.systems.render.ui.layout import Paper
@@ -201,25 +202,37 @@ def _composed(sheet: Sheet) -> Picture:
 # --- whose the arrows are ----------------------------------------------------------------------------
 
 
-def symbol_at(model: Model, view: View, pixel: Vector, *, loads: bool = False) -> Particle | Rod | None:
-    """The particle or rod whose arrow or support lies under a pixel, of a load the particle that bears it.
+def symbol_at(model: Model, view: View, pixel: Vector) -> Particle | Rod | None:
+    """The particle or rod whose arrow or support lies under a pixel, of a load that which bears it."""
+    found = _symbol_at(model, view, pixel)
+    if isinstance(found, Load):
+        return found.particle
+    return model.rods[found.rod] if isinstance(found, SpanLoad) else found
 
-    None in large models, and while something is drawn, when a click means a place. loads: only arrows of loads count.
+
+def load_at(model: Model, view: View, pixel: Vector) -> Particle | Rod | Load | SpanLoad | None:
+    """Whose arrow of a load lies under a pixel."""
+    return _symbol_at(model, view, pixel, load_theme(view.theme).load)
+
+
+def _symbol_at(
+    model: Model, view: View, pixel: Vector, colour: Colour | None = None
+) -> Particle | Rod | Load | SpanLoad | None:
+    """Whose arrow or support lies under a pixel, of a colour or any.
+
+    None in large models, and while something is drawn, when a click means a place.
     """
     elsewhere = view.covers(pixel) or not view.camera.viewport.contains(pixel)
     if elsewhere or view.tool or view.preview is not None or model.particles.count > MANY:
         return None
     sheet = measure(model, view, load_theme(view.theme))
     best, found = np.inf, None
-    marks = [mark for mark in _symbols(sheet) if not loads or getattr(mark, "colour", None) == sheet.theme.load]
+    marks = [mark for mark in _symbols(sheet) if colour is None or getattr(mark, "colour", None) == colour]
     for start, end, reach, of in (lines for mark in marks for lines in _lines_of(mark, sheet.unit)):
         away = distance_to_segments(np.array(pixel), start, end)
         if len(away) and (nearest := int(np.argmin(away))) >= 0 and away[nearest] <= min(reach, best):
             best, found = float(away[nearest]), (of[0], int(of[1][nearest]))
-    if found is None:
-        return None
-    table, row = found if found[0] != "loads" else ("particles", int(model.loads.on[found[1]]))
-    return model.rods[row] if table == "rods" else model.particles[row]
+    return None if found is None else model.tables[found[0]][found[1]]
 
 
 def _symbols(sheet: Sheet) -> list[Mark]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from time import monotonic
 from typing import Any
 
+from pinjoint.components.cases import idle_settlement
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Column, Role
 from pinjoint.components.language import joined, marked, tr
@@ -185,7 +186,13 @@ class Simulation:
                 parted = self._parted() if self.programs.collides else ""
                 self.program.commit()  # rods that edits left beyond a strength yield
                 self.note = joined(
-                    [self.programs.note, parted, idle_moment(self.model), extensible_elsewhere(self.model)]
+                    [
+                        self.programs.note,
+                        parted,
+                        idle_moment(self.model),
+                        extensible_elsewhere(self.model),
+                        idle_settlement(self.model, moving=True),
+                    ]
                 )
                 self._account.close()
                 self._sleep.review(self.program)

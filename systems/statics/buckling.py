@@ -366,8 +366,10 @@ def _notes(model: Model, factors: Array, lowest: Array, about: StaticState | Sta
         rows = np.flatnonzero(struts)
         notes.append(
             plural(
-                "At a lower load, {rods} would buckle between its hinges, at π² EI/L². Divide it to see that.",
-                "At a lower load, {rods} would buckle between their hinges, at π² EI/L². Divide them to see that.",
+                "At a lower load, {rods} would buckle between its hinges, at π² EI/L². Let it buckle as a strut,"
+                " or divide it, to see that.",
+                "At a lower load, {rods} would buckle between their hinges, at π² EI/L². Let them buckle as"
+                " struts, or divide them, to see that.",
                 len(rows),
                 rods=rod_names(model, rows),
             )

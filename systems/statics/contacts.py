@@ -259,6 +259,7 @@ class Sinking:
             tension_limit=np.concatenate([bare.tension_limit, unlimited]),
             compression_limit=np.concatenate([bare.compression_limit, unlimited]),
             sense=np.concatenate([bare.sense, np.full(len(reach), -1.0)]),
+            buckling_load=np.concatenate([bare.buckling_load, unlimited]),
             flat=np.concatenate([bare.flat, self.flat]),
             bending=None if bare.bending is None else bare.bending.with_bars(reach),
         )

@@ -18,6 +18,7 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import qr
 
+from pinjoint.components.cases import settled
 from pinjoint.components.model import Model
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import Array, Flags, Structure
@@ -82,17 +83,18 @@ def solve(model: Model) -> Solution:
     real_theory, real = real_structure(model)
     held = replace(whole, fixed=whole.fixed | independent, unknown=whole.unknown & ~independent)
     theory = FirstOrder(model, held)
-    moved = whole.field(model.particles.displacement, model.particles.rotation)
-    supports, nothing = whole.of_supports(moved), np.zeros(moved.shape)
+    places = settled(model)
+    supports = whole.of_supports(whole.field(places[:, :2], places[:, 2]))
+    nothing: Array = np.zeros(supports.shape)
     at = tuple(np.argwhere(independent).T)
-    units = np.zeros((count, *moved.shape))
+    units = np.zeros((count, *nothing.shape))
     units[(np.arange(count), *at)] = 1.0
     base = _state(model, theory, External.of(model).at(1.0), supports, 1.0)
     alone = tuple(_state(model, theory, nothing, whole.along_axes(unit), 0.0) for unit in units)
     firm = np.isin(np.arange(len(whole.ends)), whole.inextensible)
     members = replace(whole, stiffness=np.where(firm, 0.0, whole.stiffness)).stiffnesses
     fields = np.array([whole.along_supports(whole.field(one.displacement, one.rotation)) for one in alone])
-    fields = fields.reshape(count, *moved.shape)
+    fields = fields.reshape(count, *nothing.shape)
     ways = np.moveaxis(fields[:, whole.ends].reshape(count, len(whole.ends), 2 * width), 0, 2)
     load = -whole.along_supports(base.reaction[:, :width])[at] + 0.0
     if firm.any():

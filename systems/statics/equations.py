@@ -81,8 +81,8 @@ class Response:
     """The state of the rods at given displacements, by return mapping from a given plastic strain; (rods,).
 
     elastic_force: the trial force, before yielding. plastic_strain: after yielding. axis: unit vectors from
-    first to second end, (rods, 2). flowing: rods that yield now. slack: one-sided rods without force.
-    round_off: what rounding alone makes of elastic_force (kN). elongation: of the axis, which may bow. bent: how
+    first to second end, (rods, 2). flowing: rods that yield now. slack: one-sided rods without force, and struts that have
+    buckled. round_off: what rounding alone makes of elastic_force (kN). elongation: of the axis, which may bow. bent: how
     members bend; None where none do. share: of the distributed forces that acts. spring_force: what holds particles against
     elastic supports, (n, …).
 
@@ -141,7 +141,7 @@ class Branches:
 
     force: elastic of slack rods, else axial (kN). low, high: the forces at which the piece ends. outward: the
     sense of elongation, 1 or −1, in which a rod at an end of its piece leaves it; 0 elsewhere. verge:
-    one-sided rods that are about to tighten or slacken. slack: the other one-sided rods without force.
+    one-sided rods that are about to tighten or slacken, struts about to buckle. slack: the others beyond that.
     Where ends yield, (rods, 3), as of `Response`.
     """
 
@@ -173,7 +173,8 @@ class Structure:
     body: number of the connected body of each particle, (n,).
     springs: stiffness of elastic supports, 0 in fixed directions, (n, 2) or (n, 3). angle: by which the axes of supports are
         turned (rad), (n,): `fixed`, `springs` and `unknown` are along these, fields along x and y.
-    sense: 1 for cables (tension only), −1 for contacts (compression only), else 0.
+    sense: 1 for cables (tension only) and struts, −1 for contacts (compression only), else 0. buckling_load: of struts
+        (kN), infinite of others.
     own_weight: stiffness added to that of its rods in the `weight` of a particle (kN/m), (n,).
     flat: rods whose axis keeps its direction, such as contacts with a straight side.
     first_order: elongations and equilibrium about the original positions. inextensible: rows of the rods that keep their
@@ -201,6 +202,7 @@ class Structure:
     flat: Flags
     first_order: bool
     inextensible: Rows
+    buckling_load: Array
     bending: Bending | None = None
     ends_yield: bool = False
     sparse: bool = True
@@ -213,6 +215,9 @@ class Structure:
         particles, rods = model.particles, model.rods
         yields = bool(model.settings.plasticity)
         firm = rods.inextensible & (theory == FIRST_ORDER)
+        buckling_load = np.where(
+            firm | (yields & np.isfinite(rods.compression_limit)), np.inf, rods.buckling_load
+        )
         ends = rods.between.astype(np.intp)
         body = np.unique(lowest_joined(particles.count, ends), return_inverse=True)[1]
         bending = Bending.of(model, bows=theory == EXACT) if bends(model) else None
@@ -231,7 +236,7 @@ class Structure:
             stiffness=rods.stiffness.copy(),
             tension_limit=np.where(yields & ~firm, rods.tension_limit, np.inf),
             compression_limit=np.where(yields & ~firm, rods.compression_limit, np.inf),
-            sense=rods.tension_only.astype(np.float64),
+            sense=(rods.tension_only | np.isfinite(buckling_load)).astype(np.float64),
             fixed=fixed,
             springs=springs,
             angle=angle,
@@ -241,6 +246,7 @@ class Structure:
             flat=np.zeros(rods.count, dtype=bool),
             first_order=theory == FIRST_ORDER,
             inextensible=np.flatnonzero(firm),
+            buckling_load=buckling_load,
             bending=bending,
             ends_yield=bool(np.isfinite(rods.moment_limit).any() or rods.plastic_rotation.any()),
         )
@@ -261,6 +267,39 @@ class Structure:
         if bending is not None:
             bending = replace(bending, moment_limit=np.full_like(bending.moment_limit, np.inf))
         return replace(self, tension_limit=limitless, compression_limit=limitless, bending=bending)
+
+    @property
+    def struts(self) -> Flags:
+        """Rods that may buckle by themselves."""
+        return np.isfinite(self.buckling_load)
+
+    @property
+    def softening(self) -> Array:
+        """What remains of the stiffness EA of one-sided rods once they have given way: of struts P/2, in exact geometry."""
+        return np.where(self.struts & (not self.first_order), 0.5 * self.buckling_load / self.stiffness, 0.0)
+
+    def given_way(self, elastic: Array) -> Array:
+        """The axial forces (rods,) of one-sided rods and struts that have given way, by what they would be before."""
+        edge = self._edge
+        return edge + self.softening * (elastic - edge)
+
+    def stored_aside(self, response: Response) -> Array:
+        """Twice what struts that have buckled store besides N² L₀/2EA (kN·m), (rods,): by bending, and at P."""
+        load, force = np.where(self.struts, self.buckling_load, 0.0), response.axial_force
+        beyond = self.stiffness * self.folded(response)
+        stored = load**2 + 2.0 * load * beyond + self.softening * beyond**2 - force**2
+        buckled = (beyond > 0.0) & (force > of_axes(response.elastic_force))
+        return np.where(buckled, self.rest_length / self.stiffness * stored, 0.0)
+
+    def folded(self, response: Response) -> Array:
+        """By what share of their length the ends of struts come nearer by bending aside, (rods,)."""
+        beyond: Array = -of_axes(response.elastic_force) - np.where(self.struts, self.buckling_load, np.inf)
+        return np.maximum(beyond, 0.0) / self.stiffness
+
+    @property
+    def _edge(self) -> Array:
+        """The elastic force at which one-sided rods slacken, and struts buckle."""
+        return np.where(self.struts, -self.buckling_load, 0.0)
 
     @property
     def supported(self) -> Flags:
@@ -588,18 +627,11 @@ class Structure:
         """Axial forces as if no rod yielded, which are slack, and axial forces."""
         elastic = self.stiffness * (strain - permanent)
         if piece is not None:
-            slack = piece.slack[:, 0]
-            return (
-                elastic,
-                slack,
-                np.where(slack, 0.0, np.where(piece.flowing[:, 0], piece.edge[:, 0], elastic)),
-            )
-        slack = self.sense * elastic < 0.0
-        return (
-            elastic,
-            slack,
-            np.where(slack, 0.0, np.clip(elastic, -self.compression_limit, self.tension_limit)),
-        )
+            slack, firm = piece.slack[:, 0], np.where(piece.flowing[:, 0], piece.edge[:, 0], elastic)
+        else:
+            slack = self.sense * (elastic - self._edge) < 0.0
+            firm = np.clip(elastic, -self.compression_limit, self.tension_limit)
+        return elastic, slack, np.where(slack, self.given_way(elastic), firm)
 
     # --- plastic hinges ------------------------------------------------------------------------------
 
@@ -798,8 +830,14 @@ class Structure:
         """d² of the potential of rods by elongation and turning of the chord, and both slopes, (rods, 4, 4)."""
         assert self.bending is not None
         assert response.bent is not None
-        along = np.where(of_axes(soft), 0.0, self.stiffness / self.rest_length)
+        along = self._along(response, soft)
         return self.bending.hessian(response.bent, along, response.axial_force, not self.first_order)
+
+    def _along(self, response: Response, soft: Flags) -> Array:
+        """EA/L₀, of soft rods none, or what is left of it, (rods,)."""
+        left = self.softening * (of_axes(response.elastic_force) < 0.0)
+        along: Array = np.where(of_axes(soft), left, 1.0) * (self.stiffness / self.rest_length)
+        return along
 
     def _sheared(self, response: Response, pull: Array | float, moment: Array, shear: Array) -> Array:
         left = np.column_stack([-response.axis[:, 1], response.axis[:, 0]])
@@ -835,19 +873,19 @@ class Structure:
 
     def branches(self, response: Response, scale: float) -> Branches:
         """The pieces of their laws that the rods are on; forces (kN) below AT_LIMIT × scale count as 0."""
-        nothing = AT_LIMIT * scale + response.round_off
+        nothing, edge = AT_LIMIT * scale + response.round_off, self._edge
         sense, (low, high) = self.sense, self._limits
         if response.flowing.ndim > 1:
-            sense = sense[:, None] * [1.0, 0.0, 0.0]
-        verge = (sense != 0.0) & (np.abs(response.elastic_force) <= nothing)
+            sense, edge = (values[:, None] * [1.0, 0.0, 0.0] for values in (sense, edge))
+        verge = (sense != 0.0) & (np.abs(response.elastic_force - edge) <= nothing)
         slack = response.slack & ~verge
-        low = np.where(sense > 0.0, 0.0, low)
+        low = np.where(sense > 0.0, edge, low)
         high = np.where(sense < 0.0, 0.0, high)
         outward = np.where(self.at_limit(response), np.sign(response.force), 0.0)
         return Branches(
             force=np.where(slack, response.elastic_force, response.force),
             low=np.where(slack, np.where(sense > 0.0, -np.inf, 0.0), low),
-            high=np.where(slack, np.where(sense > 0.0, 0.0, np.inf), high),
+            high=np.where(slack, np.where(sense > 0.0, edge, np.inf), high),
             outward=np.where(verge, -sense, outward),
             slack=slack,
             verge=verge,
@@ -880,9 +918,9 @@ class Structure:
     def tangents(self, response: Response, soft: Flags, *, geometric: bool) -> Array:
         """dF/du of every rod over the coordinates of both ends, (rods, 2, width, 2, width).
 
-        EA/L₀ a aᵀ (not of soft rods) + N/L (1 − a aᵀ), and what bending adds.
+        EA/L₀ a aᵀ (of soft rods none, or what is left of it) + N/L (1 − a aᵀ), and what bending adds.
         """
-        along = np.where(of_axes(soft), 0.0, self.stiffness / self.rest_length)
+        along = self._along(response, soft)
         across = np.zeros_like(along)
         geometric = geometric and not self.first_order
         if geometric:

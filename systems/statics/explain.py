@@ -38,16 +38,30 @@ def rod_names(model: Model, rows: Rows) -> str:
 
 
 def slack_named(model: Model, slack: Flags) -> str:
-    """A sentence that names the slack cables; "" if there are none."""
-    rows = np.flatnonzero(of_axes(slack))
-    if not len(rows):
-        return ""
-    return plural(
-        "{rods} is slack; tighten it if that is not intended.",
-        "{rods} are slack; tighten them if that is not intended.",
-        len(rows),
-        rods=begun(rod_names(model, rows)),
-    )
+    """Sentences that name the slack cables, and the struts that have buckled; "" if there are none."""
+    struts = np.isfinite(model.rods.buckling_load)
+    slack = of_axes(slack)[: len(struts)]
+    cables, buckled = np.flatnonzero(slack & ~struts), np.flatnonzero(slack & struts)
+    said = []
+    if len(cables):
+        said += [
+            plural(
+                "{rods} is slack; tighten it if that is not intended.",
+                "{rods} are slack; tighten them if that is not intended.",
+                len(cables),
+                rods=begun(rod_names(model, cables)),
+            )
+        ]
+    if len(buckled):
+        said += [
+            plural(
+                "{rods} has buckled.",
+                "{rods} have buckled.",
+                len(buckled),
+                rods=begun(rod_names(model, buckled)),
+            )
+        ]
+    return joined(said)
 
 
 def hinges_named(model: Model, flowing: Flags) -> str:

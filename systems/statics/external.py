@@ -8,6 +8,7 @@ import numpy as np
 
 from pinjoint.components import written
 from pinjoint.components.bent import borne_between
+from pinjoint.components.cases import factor_of_each, idle_settlement, permanent, unknown_case
 from pinjoint.components.language import plural, tr
 from pinjoint.components.load import static_factor
 from pinjoint.components.model import Model
@@ -34,28 +35,29 @@ class External:
 
     @classmethod
     def of(cls, model: Model, theory: str = EXACT) -> External:
-        """The external forces on a model; a varying load counts with the factor of its history in statics.
+        """The external forces on a model; a load counts with the factors of its case and of its history in statics.
 
         theory: where "first-order", without those on particles that no rod joins, which no contact can hold either.
         """
         particles, environment = model.particles, model.environment
-        scaled = particles.force + np.array(environment.force) + borne_between(model)
-        moment = particles.moment.copy()
-        notes = []
-        for load in model.loads:
-            factor = static_factor(load.history)
-            np.add.at(scaled, load.on, factor * np.array(load.force))
-            moment[load.on] += factor * load.moment
-            if factor == 0.0:
-                notes.append(
-                    tr(
-                        "The {history} load on {particle} counts as 0 in statics.",
-                        history=load.history["kind"],
-                        particle=load.particle.name,
-                    )
+        loads, share = model.loads, permanent(model)
+        scaled = share * (particles.force + np.array(environment.force)) + borne_between(model)
+        by_history = np.array([static_factor(history) for history in loads.history], dtype=np.float64)
+        factor = by_history * factor_of_each(model, "loads")
+        moment = share * particles.moment
+        np.add.at(scaled, loads.on, factor[:, None] * loads.force)
+        np.add.at(moment, loads.on, factor * loads.moment)
+        notes = [note for note in (unknown_case(model), idle_settlement(model, moving=False)) if note]
+        for load in [loads[row] for row in np.flatnonzero(by_history == 0.0).tolist()]:
+            notes.append(
+                tr(
+                    "The {history} load on {particle} counts as 0 in statics.",
+                    history=load.history["kind"],
+                    particle=load.particle.name,
                 )
+            )
         acceleration = particles.acceleration + np.array(environment.acceleration)
-        steady = particles.mass[:, None] * acceleration / 1000.0
+        steady = share * particles.mass[:, None] * acceleration / 1000.0
         if bends(model):
             turns = rigid_joints(model) | particles.fixed_rotation
             scaled = np.column_stack([scaled, np.where(turns, moment, 0.0)])

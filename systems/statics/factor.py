@@ -131,13 +131,14 @@ def is_held(model: Model, *, at_first: bool = False) -> bool:
     """True if every small displacement of the nodes is resisted, found quickly enough for every frame.
 
     at_first: as if no rod bore any force yet, so that mechanisms are not held, whatever tension keeps them in shape.
-    Yielding rods and slack cables do not resist elongation.
+    Yielding rods and slack cables do not resist elongation, struts that have buckled hardly.
     """
     particles, rods = model.particles, model.rods
     structure = replace(Structure.of(model).with_translations(), sparse=False)
     place = structure.field(particles.displacement, particles.rotation)
     response = structure.respond(place, np.column_stack([rods.plastic_strain, rods.plastic_rotation]), 1.0)
     soft = rods.yielding | (rods.tension_only & (rods.axial_force <= 0.0))
+    soft = soft | (rods.axial_force < -rods.buckling_load)
     if structure.ends_yield:
         hinges = structure.untied(rods.hinge_yielding, np.abs(rods.plastic_rotation))
         soft = np.column_stack([soft, hinges])

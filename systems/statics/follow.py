@@ -323,14 +323,18 @@ class Path:
         sign = branches.outward[limited]
         stiffness = structure.own_stiffness[limited]
         growth = stiffness * self._growth(response, branches, elastic)[limited]
+        left = np.zeros(limited.shape)
+        of_axes(left)[...] = structure.softening * of_axes(branches.verge)
+        hardened = stiffness / (1.0 - left[limited])  # of what softens, with what is left of its stiffness
         if limited.ndim > 1:
             efforts, together = structure.efforts(response, limited, elastic.soft)
             held = efforts @ elastic.factor.solve(np.ascontiguousarray(efforts.T))
-            matrix = sign[:, None] * (together - held) * sign + TIED * np.diag(stiffness)
+            more = hardened - (1.0 - TIED) * stiffness
+            matrix = sign[:, None] * (together - held) * sign + np.diag(more)
             return limited, 0.5 * (matrix + matrix.T), growth
         pull = structure.elongations(response, np.flatnonzero(limited)) * sign[:, None]
         softening = pull @ elastic.factor.solve(np.ascontiguousarray(pull.T))
-        matrix = np.diag(stiffness) - stiffness[:, None] * softening * stiffness
+        matrix = np.diag(hardened) - stiffness[:, None] * softening * stiffness
         return limited, 0.5 * (matrix + matrix.T), growth
 
     def _giving(self, limited: Flags, matrix: Array, growth: Array, chosen: Flags) -> Flags:
@@ -576,7 +580,8 @@ class Path:
             of_ends = Piece(piece.flowing, piece.slack, edge)
             return self.respond(displacement, start.plastic_strain, t, of_ends)
         response = self.respond(displacement, start.plastic_strain, t)
-        force = np.where(piece.slack, 0.0, np.where(piece.flowing, edge, response.elastic_force))
+        given = self.structure.given_way(response.elastic_force)
+        force = np.where(piece.slack, given, np.where(piece.flowing, edge, response.elastic_force))
         return replace(response, axial_force=force, flowing=piece.flowing, slack=piece.slack)
 
     def _is_on(self, start: Point, piece: Tangent, found: Point) -> bool:

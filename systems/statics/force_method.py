@@ -23,6 +23,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pinjoint.components.cases import settled
 from pinjoint.components.derived import on_axis
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
@@ -234,8 +235,9 @@ class Released:
         structure, rods, model = self.theory.structure, self.theory.structure.grown(share), self._model
         if moment.any():
             load = load - structure.held(moment)
-        place = structure.field(model.particles.displacement, model.particles.rotation)
-        supports, strain = share * structure.of_supports(place), share * model.rods.plastic_strain
+        places = settled(model)
+        supports = structure.of_supports(structure.field(places[:, :2], places[:, 2]))
+        supports, strain = share * supports, share * model.rods.plastic_strain
         moved, response = self.theory.equilibrium(load, supports, strain, share, rods)
         return SetState.of(model, rods, load, moved, response, moment)
 
@@ -266,7 +268,7 @@ def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequ
     length, bends = rods.rest_length, rods.bending_stiffness > 0.0
     softness, turning = np.where(rods.inextensible, 0.0, length / rods.stiffness), np.zeros(rods.count)
     np.divide(length, rods.bending_stiffness, out=turning, where=bends)
-    curvature = -rods.thermal_expansion * rods.temperature_gradient * bends
+    curvature = rods.free_curvature * bends
     # ∫ m M dξ by the values at both ends, and what springs there add: EI/(k L₀) m M.
     sprung = np.where(rods.fixity > 0.0, rods.fixity, 1.0)
     linear = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0 + (1.0 / sprung - 1.0)[:, None] / 3.0 * np.eye(2)
@@ -317,5 +319,5 @@ def _free(model: Model) -> Array:
 
 
 def _places(model: Model) -> Array:
-    """Displacements and rotations of all particles along the axes of their supports, (n, 3)."""
-    return in_support_axes(model, np.column_stack([model.particles.displacement, model.particles.rotation]))
+    """Displacements and rotations of rigid supports along their axes, (n, 3)."""
+    return in_support_axes(model, settled(model))

@@ -167,15 +167,23 @@ class Loading:
             self.events.append(Event("hinge", self.factor(t), message, (names[row],), place=place))
 
     def _note_cables(self, tangent: Tangent) -> None:
-        """Report the cables that go slack, or tighten again."""
-        present, t = of_axes(tangent.slack), self.point.t
-        slack, taut = present & ~self.slack, self.slack & ~present
-        if slack.any():
-            said = self._said_of("{rods} goes slack {at}.", "{rods} go slack {at}.", slack, t)
-            self._tell("slack", t, said, slack)
-        if taut.any():
-            said = self._said_of("{rods} becomes taut {at}.", "{rods} become taut {at}.", taut, t)
-            self._tell("taut", t, said, taut)
+        """Report the cables that go slack, or tighten again, and the struts that buckle, or become straight again."""
+        present = of_axes(tangent.slack)
+        given, back = present & ~self.slack, self.slack & ~present
+        struts, t = self.path.structure.struts, self.point.t
+        slack, taut, bent, straight = given & ~struts, back & ~struts, given & struts, back & struts
+        for kind, rods, said in (
+            ("slack", slack, self._said_of("{rods} goes slack {at}.", "{rods} go slack {at}.", slack, t)),
+            ("taut", taut, self._said_of("{rods} becomes taut {at}.", "{rods} become taut {at}.", taut, t)),
+            ("buckling", bent, self._said_of("{rods} buckles {at}.", "{rods} buckle {at}.", bent, t)),
+            (
+                "straight",
+                straight,
+                self._said_of("{rods} is straight again {at}.", "{rods} are straight again {at}.", straight, t),
+            ),
+        ):
+            if said:
+                self._tell(kind, t, said, rods)
         self.slack = present
 
     def _note_plastic_mechanism(self, tangent: Tangent, following: Tangent) -> None:
@@ -209,6 +217,8 @@ class Loading:
         """Go on from the last stable point to the next stable equilibrium, and report the jump."""
         path, critical = self.path, self.point
         structure = path.structure
+        if (of_axes(beyond.slack) & ~self.slack & structure.struts).any():
+            self._note_cables(beyond)
         plastic = bool(beyond.flowing.any()) and is_stable(path.structure, critical.response, beyond.slack)
         mode = self._mode(beyond)
         if plastic and structure.ends_yield and self._is_plastic_mechanism(beyond):
@@ -277,9 +287,12 @@ class Loading:
         elif outcome == "gave up":
             raise self._lost(found)
         elif not (found.plastic_strain != start.plastic_strain).any():
-            raise self._mechanism(found.displacement - start.displacement, found.response.slack)
+            way, slack = found.displacement - start.displacement, found.response.slack
+            buckled = slack & self.path.structure.struts
+            raise self._collapse(buckled, way) if buckled.any() else self._mechanism(way, slack)
         elif plastic is not None and nudge is not None:
-            raise self._collapse(plastic.flowing, self.path.structure.spread(nudge))
+            buckled = plastic.slack & self.path.structure.struts
+            raise self._collapse(plastic.flowing | buckled, self.path.structure.spread(nudge))
         else:
             raise self._collapse(found.response.flowing, found.displacement - start.displacement)
 
@@ -326,6 +339,17 @@ class Loading:
                 " load or strengthen the members there.",
                 at=self._at(self.point.t),
                 hinges=hinges,
+                motion=describe_motion(self.model, motion[None]),
+            )
+        if (of_axes(flowing) & self.slack).any():
+            message = plural(
+                "Collapse {at}: nothing resists moving {motion} while {rods} has buckled. Lower the load or stiffen"
+                " this rod.",
+                "Collapse {at}: nothing resists moving {motion} while {rods} yield or have buckled. Lower the load or"
+                " stiffen these rods.",
+                len(rows),
+                at=self._at(self.point.t),
+                rods=rod_names(self.model, rows),
                 motion=describe_motion(self.model, motion[None]),
             )
         earlier = next((event for event in self.events if event.kind == "plastic mechanism"), None)

@@ -42,7 +42,7 @@ class Divided:
     def of(cls, model: Model) -> Divided | None:
         """That of a model; None where no rod that bends has a mass."""
         rods, particles = model.rods, model.particles
-        heavy = (rods.bending_stiffness > 0.0) & (rods.density > 0.0)
+        heavy = (rods.bending_stiffness > 0.0) & (rods.density > 0.0) & ~np.isfinite(rods.buckling_load)
         if not heavy.any():
             return None
         whole = _bending(model)
@@ -73,7 +73,14 @@ class Divided:
             whole,
             **{
                 name: getattr(whole, name)[row]
-                for name in ("stiffness", "tension_limit", "compression_limit", "sense", "flat")
+                for name in (
+                    "stiffness",
+                    "tension_limit",
+                    "compression_limit",
+                    "sense",
+                    "buckling_load",
+                    "flat",
+                )
             },
             position=np.concatenate([whole.position, between]),
             ends=ends,

@@ -59,7 +59,8 @@ def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STE
         if crept is None:
             break
         point, penalty = crept
-        if torn(point.plastic_strain - start.plastic_strain).any():
+        folded = largest(structure.folded(point.response)) if structure.first_order else 0.0
+        if torn(point.plastic_strain - start.plastic_strain).any() or folded > LARGEST_PLASTIC_STRAIN:
             return point, "strained apart"
         if has_run_away(structure, point.displacement, start.displacement):
             return point, "ran away"

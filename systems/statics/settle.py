@@ -111,7 +111,7 @@ class Settlement:
 def settle(
     model: Model, factors: Sequence[float] | float = (1.0,), theory: str = EXACT, start: Start | None = None
 ) -> Settlement:
-    """The equilibria at these load factors in turn, from a state (None: the present one); the model is unchanged.
+    """The equilibria at these load factors in turn, from a state (None: the present one, supports settled by loads).
 
     Factors multiply forces and loads; accelerations grow from 0 to 1 with the first factor and then stay.
     In a model that has not moved yet, lack of fit and moved supports act before the load; in any other model the
@@ -125,7 +125,7 @@ def settle(
     problem = incomputable(model)
     if problem:
         raise FieldError(problem)
-    start = start or Start.present(model)
+    start = start or Start.of(model)
     found = _Settling(model, theory, start).through(wanted)
     if theory == EXACT and model.settings.collisions:
         discs = Discs.of(model, start.displacement)

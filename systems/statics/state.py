@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.derived import diagrams
+from pinjoint.components.cases import settled
+from pinjoint.components.derived import amplitude, diagrams
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
 from pinjoint.components.particle import of_rigid_supports
-from pinjoint.components.rod import bends
+from pinjoint.components.rod import bends, has_struts
 from pinjoint.systems.statics.equations import Array, Flags, Response, Rows, Structure, of_axes
 from pinjoint.systems.statics.events import Event
 
@@ -29,7 +30,8 @@ class StaticState:
     """The state at one load factor, in m, kN and J: the particles' fields are (n, 2) or (n,), the rods' (rods,).
 
     reaction: the supports' force, 0 where there is none; reaction_moment: likewise of clamps and rotation springs.
-    diagrams: by the names of columns, (rods, 2). residual: the largest unbalanced force over the largest so far.
+    diagrams: by the names of columns, (rods, 2), with the deflections of struts (rods,). residual: the largest unbalanced
+    force over the largest so far.
     dissipated_plastic: since settling began. status: "equilibrium"; "neutral equilibrium" where nothing resists some
     motion, so that the place is one of many; "unstable equilibrium"; "mechanism", "collapse" or "limit reached", with
     which all values are those of the last equilibrium on the way. events: those on the way from the state before.
@@ -73,6 +75,7 @@ class StaticState:
         pressing = rods.stop + np.flatnonzero(response.axial_force[rods.stop :] < 0.0)
         reaction = structure.reactions(response, load)[:count]
         stored = response.axial_force**2 * structure.rest_length / structure.stiffness
+        stored += structure.stored_aside(response)
         stored[structure.inextensible] = 0.0
         elastic = 500.0 * float(stored[rods].sum())
         if structure.bending is not None and response.bent is not None:
@@ -95,16 +98,19 @@ class StaticState:
             hinge_yielding=none > 0.0 if limited.ndim == 1 else limited[:, 1:],
             reaction=reaction[:, :2],
             reaction_moment=structure.rotation(reaction),
-            diagrams=diagrams(
-                model,
-                response.axis[rods],
-                response.length[rods],
-                structure.chords(displacement)[rods],
-                structure.rotation(displacement)[structure.ends[rods]],
-                (response.axial_force[rods], structure.end_moments(response)[rods]),
-                share=response.share,
-                first_order=structure.first_order,
-            ),
+            diagrams={
+                **_of_struts(model, response),
+                **diagrams(
+                    model,
+                    response.axis[rods],
+                    response.length[rods],
+                    structure.chords(displacement)[rods],
+                    structure.rotation(displacement)[structure.ends[rods]],
+                    (response.axial_force[rods], structure.end_moments(response)[rods]),
+                    share=response.share,
+                    first_order=structure.first_order,
+                ),
+            },
             elastic_energy=elastic,
             contacts=structure.ends[pressing],
             contact_force=-response.axial_force[pressing],
@@ -155,6 +161,14 @@ class StaticState:
             model.give(name, columns[name])
 
 
+def _of_struts(model: Model, response: Response) -> dict[str, NDArray[Any]]:
+    """How far struts are bent aside, as a column by its name; none where there are none."""
+    if not has_struts(model):
+        return {}
+    strain, plastic = (part[: model.rods.count] for part in (response.strain, of_axes(response.plastic_strain)))
+    return {"lateral_deflection": amplitude(model.rods, strain, plastic)}
+
+
 @dataclass(frozen=True)
 class Start:
     """The state that settling starts from: displacement (n, 2) in m, rotation (n,), and what is permanent, plastic strain of
@@ -172,18 +186,25 @@ class Start:
     def present(cls, model: Model) -> Start:
         """A model's present state, or the solution that it shows."""
         factor = 1.0 if model.solution is None else model.settings.load_steps[-1]
-        return cls.of(model.column, factor)
+        return cls.stored(model.column, factor)
 
     @classmethod
-    def of(cls, column: Callable[[str], NDArray[Any]], load_factor: float = 1.0) -> Start:
+    def stored(cls, column: Callable[[str], NDArray[Any]], load_factor: float = 1.0) -> Start:
         """The state in which columns are, by "table.field"."""
         strain, turned = column("rods.plastic_strain"), column("rods.plastic_rotation")
         moved, rotation = (column(f"particles.{name}").copy() for name in ("displacement", "rotation"))
         return cls(moved, rotation, np.column_stack([strain, turned]), load_factor=load_factor)
 
     @classmethod
+    def of(cls, model: Model) -> Start:
+        """The same, in which rigid supports are where loads let them settle."""
+        start, moved = cls.present(model), settled(model)
+        free = start.displacement - of_rigid_supports(model, start.displacement)
+        rotation = np.where(model.particles.fixed_rotation, moved[:, 2], start.rotation)
+        return replace(start, displacement=free + moved[:, :2], rotation=rotation)
+
+    @classmethod
     def undeformed(cls, model: Model, permanent: Array) -> Start:
         """The undeformed beginning with what is permanent: only supports that have settled are displaced."""
-        particles = model.particles
-        moved = of_rigid_supports(model, particles.displacement)
-        return cls(moved, np.where(particles.fixed_rotation, particles.rotation, 0.0), permanent)
+        moved = settled(model)
+        return cls(moved[:, :2], moved[:, 2], permanent)

@@ -50,6 +50,11 @@ class FirstOrder:
         self._matrix = structure.initial_tangent
         self._factor = regular(self._matrix, self._measure.weight)
 
+    @classmethod
+    def of(cls, model: Model) -> FirstOrder:
+        """That of a model."""
+        return cls(model, Structure.of(model, FIRST_ORDER))
+
     @cached_property
     def held(self) -> bool:
         """True if every motion is resisted, and by so much that no digits are lost."""
@@ -96,8 +101,7 @@ class FirstOrder:
     def _answer(self, load: Array, longer: Array) -> tuple[Array, Array]:
         """The same, and what the axial forces of inextensible rods are beside those by their EA: Lagrange's multipliers."""
         structure, model = self.structure, self.model
-        if structure.sense.any():
-            rows = np.flatnonzero(structure.sense)
+        if len(rows := np.flatnonzero((structure.sense != 0.0) & ~structure.struts)):
             cables = plural("{rods} acts", "{rods} act", len(rows), rods=begun(rod_names(model, rows)))
             message = tr(
                 "{cables} in tension only, and linear theory needs rods that bear compression as well. Find the equilibrium"
@@ -179,7 +183,7 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
     displacements of constrained directions as moved supports. factor: of forces and loads; all else acts in full.
     Raises NoEquilibrium, naming the particles, for a mechanism or a free body that the load moves.
     """
-    structure, start = Structure.of(model, FIRST_ORDER), start or Start.present(model)
+    structure, start = Structure.of(model, FIRST_ORDER), start or Start.of(model)
     load = External.of(model).at(factor)
     for body in loose_bodies(structure, load):
         if body.pull:
@@ -319,15 +323,14 @@ def _localised(basis: Array) -> Array:
 # --- influence -------------------------------------------------------------------------------------------
 
 
-def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Array:
+def influence_line(theory: FirstOrder, quantity: str, row: int, axis: int = 0, share: float = 0.0) -> Array:
     """What a unit force on each particle along x and y, where members bend and a moment, does to a quantity, (n, …).
 
-    quantity, row, axis: "axial_force" or "shear" of a rod, its "bending_moment" at an end (0: start, 1: end); of a direction
-    of a particle (2: turning) its "reaction" or "reaction_moment", its "displacement" or "rotation". Of a force, by
+    quantity, row: "axial_force" or "shear" of a rod, its "bending_moment" at a share of its length; by axis (2: turning)
+    of a particle its "reaction" or "reaction_moment", its "displacement" or "rotation". Of a force, by
     Müller-Breslau, it is the deflection that a unit displacement in its place causes; of a displacement, by Maxwell, that
     under a unit load there. Raises NoEquilibrium.
     """
-    theory = FirstOrder(model, Structure.of(model, FIRST_ORDER))
     structure, unit = theory.structure, np.zeros(theory.structure.fixed.shape)
     if quantity == "axial_force":
         pull = np.zeros_like(structure.difference)
@@ -336,9 +339,7 @@ def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Arra
     if quantity in ("shear", "bending_moment"):
         assert structure.bending is not None
         kinks = np.zeros(structure.ends.shape)
-        kinks[row] = (
-            1.0 / structure.original_length[row] if quantity == "shear" else np.eye(2)[axis] * [-1.0, 1.0]
-        )
+        kinks[row] = 1.0 / structure.original_length[row] if quantity == "shear" else (share - 1.0, share)
         return theory.deflection(structure.held(structure.bending.moments(kinks)))
     unit[row, axis] = 1.0
     unit = structure.along_axes(unit)

@@ -67,7 +67,7 @@ class Theories:
 
         Raises FieldError for numbers too large or too small to compute with.
         """
-        start = start or Start.present(model)
+        start = start or Start.of(model)
         exact = settle(model, start=start)
         refusal, first_order = None, None
         try:

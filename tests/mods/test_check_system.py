@@ -35,6 +35,11 @@ CABLES = EVERYTHING | {"rods": [rod | {"tension_only": True} for rod in EVERYTHI
 FRAME = EVERYTHING | {
     "rods": [rod | {"bending_stiffness": 50.0, "temperature_gradient": 5.0} for rod in EVERYTHING["rods"]]
 }
+STRUTS = EVERYTHING | {
+    "rods": [
+        rod | {"buckles": True, "hinged": [True, True], "bending_stiffness": 1.0} for rod in EVERYTHING["rods"]
+    ]
+}
 OURS = {system.name: system for system in [*step_systems(), *(make() for make in EXTENSIONS.systems)]}
 
 
@@ -47,6 +52,7 @@ def test_our_step_systems_pass(name: str) -> None:
     others = {
         "physics.elasticity": ELASTIC,
         "physics.slackness": CABLES,
+        "physics.buckling": STRUTS,
         "physics.axial_damping_of_cables": CABLES,
         **dict.fromkeys(("physics.bending", "physics.bending_damping", "physics.turning_drag"), FRAME),
     }

@@ -12,7 +12,7 @@ from pinjoint.documents.models import parse
 from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.force_method import solve
 from pinjoint.systems.statics.settle import settle
-from pinjoint.systems.statics.theory import Indeterminacy, influence_line, linear, mechanisms
+from pinjoint.systems.statics.theory import FirstOrder, Indeterminacy, influence_line, linear, mechanisms
 from pinjoint.systems.statics.unknowns import Unknown, redundants
 from pinjoint.systems.statics.vibration import Vibrations
 from tests.reference.models import model, particle, rod
@@ -87,7 +87,7 @@ def test_the_force_method_and_influence_lines_along_turned_axes() -> None:
         [found.reaction[3] @ normal], rel=1e-9
     )
     assert len(redundants(made)) == Indeterminacy.of(made).static == 1
-    line = influence_line(made, "reaction", 3, 1)
+    line = influence_line(FirstOrder.of(made), "reaction", 3, 1)
     made.assign(list(made.rods), "distributed_force", [(0.0, 0.0)] * 3)
     for row, axis in ((1, 0), (2, 1), (3, 0)):
         made.assign(list(made.particles), "force", [(0.0, 0.0)] * 4)

@@ -16,7 +16,7 @@ from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.force_method import solve
 from pinjoint.systems.statics.settle import settle
-from pinjoint.systems.statics.theory import Indeterminacy, influence_line, linear
+from pinjoint.systems.statics.theory import FirstOrder, Indeterminacy, influence_line, linear
 from pinjoint.systems.statics.unknowns import MethodError, Unknown
 from tests.reference.models import CLAMPED, model, particle, rod
 from tests.verification.test_frame_theory import SEEDS, agrees, random_frame
@@ -122,7 +122,10 @@ def test_the_force_method_has_no_terms_of_inextensible_rods() -> None:
 
 def test_influence_lines() -> None:
     made = portal(distributed_force=[0.0, 0.0])
-    thrust, force = influence_line(made, "reaction", 3, 0), influence_line(made, "axial_force", 1)
+    thrust, force = (
+        influence_line(FirstOrder.of(made), "reaction", 3, 0),
+        influence_line(FirstOrder.of(made), "axial_force", 1),
+    )
     made.particles["B"].force = (1.0, 0.0)
     found = linear(made)
     assert thrust[1, 0] == pytest.approx(found.reaction[3, 0], rel=1e-9)

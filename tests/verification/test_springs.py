@@ -15,7 +15,14 @@ from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.counting import Count
 from pinjoint.systems.statics.force_method import solve
 from pinjoint.systems.statics.settle import settle
-from pinjoint.systems.statics.theory import Indeterminacy, influence_line, linear, mechanisms, self_stress
+from pinjoint.systems.statics.theory import (
+    FirstOrder,
+    Indeterminacy,
+    influence_line,
+    linear,
+    mechanisms,
+    self_stress,
+)
 from pinjoint.systems.statics.unknowns import Unknown, redundants
 from pinjoint.systems.statics.vibration import Vibrations
 from tests.reference.frames import least_energy
@@ -97,7 +104,7 @@ def test_semi_rigid_ends_in_the_force_method() -> None:
 
 def test_influence_of_loads_on_a_spring() -> None:
     made = two_spans(300.0)
-    line = influence_line(made, "reaction", 1, 1)
+    line = influence_line(FirstOrder.of(made), "reaction", 1, 1)
     for row in (0, 1, 2):
         loaded = two_spans(300.0)
         loaded.assign(list(loaded.rods), "distributed_force", [(0.0, 0.0)] * 2)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from pinjoint.components import written
-from pinjoint.components.field import Vector
+from pinjoint.components.field import Field, Vector
 from pinjoint.components.language import begun, listed, marked, plural, tr
-from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod
 from pinjoint.components.settings import HUBS, PAUSE, STATICS
 from pinjoint.components.tags import Selected
 from pinjoint.editor.clipboard import Part
@@ -21,16 +20,18 @@ from pinjoint.editor.readouts import pin_at, pinned, retype
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.editor.toolbar import menu_at
 from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.arrows import Loaded, dragged
 from pinjoint.systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
 from pinjoint.systems.edit.placing import Movable, nudged, snapped
 from pinjoint.systems.edit.rods import delete
 from pinjoint.systems.forms.properties import counted, heading
 from pinjoint.systems.input.actions import ACTIONS, IN_LESSONS, IN_PICTURES, LIVE, SIMULATION, actions_of
-from pinjoint.systems.render.picture import symbol_at
+from pinjoint.systems.render.picture import load_at, symbol_at
 
 action = actions_of("Select and edit")
 
 BESIDE = 30.0  # points to the right and down, where a duplicate appears
+ON_LINE = 4.0  # points from a rod or an outline, within which a drag is of it, not of a load on it
 
 
 # --- the pointer -----------------------------------------------------------------------------------------
@@ -121,24 +122,25 @@ def _drag(context: Context, pixel: Vector) -> None:
         context.gesture = PullParticle(context, particle)
     elif context.scene in HUBS and particle is None and (grip := pick_point(model, view, pixel)) is not None:
         context.gesture = MovePoint(context, grip)
-    elif context.scene in HUBS and particle is None and (element := _arrow_at(context, pixel)) is not None:
-        context.gesture = MoveArrow(context, element, pixel)
+    elif context.scene in HUBS and particle is None and (held := _arrow_at(context, pixel)) is not None:
+        context.gesture = MoveArrow(context, *held, pixel)
     elif context.scene in HUBS and (hit := particle or pick_line(model, view, pixel)) is not None:
         context.gesture = Move(context, hit, pixel)
     else:
         context.gesture = BoxSelect(context, pixel, adding=False)
 
 
-def _arrow_at(context: Context, pixel: Vector) -> Particle | Rod | None:
-    """The particle or rod whose own load has an arrow at a pixel, off all rods."""
-    if pick_line(context.model, context.view, pixel) is not None:
-        return None
-    element = symbol_at(context.model, context.view, pixel, loads=True)
-    if element is None:
-        return None
-    return (
-        element if any(element.force if isinstance(element, Particle) else element.distributed_force) else None
-    )
+def _arrow_at(context: Context, pixel: Vector) -> tuple[Loaded, list[Field[Any]]] | None:
+    """What has the arrow of a load at a pixel, and what a drag of it changes; on rods only where span loads begin or end."""
+    model, view = context.model, context.view
+    element = load_at(model, view, pixel)
+    for one in (
+        [] if element is None else [element, *(load for load in model.loads if load.particle is element)]
+    ):
+        if fields := dragged(model, view, one, pixel):
+            on_line = fields[0].unit != "m" and pick_line(model, view, pixel, ON_LINE) is not None
+            return None if on_line else (one, fields)
+    return None
 
 
 action("drag to add", "ctrl+drag", "add all in a box to the selection")(

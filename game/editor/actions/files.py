@@ -49,11 +49,14 @@ def _new(context: Context, pixel: Vector) -> None:
 
 @action("sheet", "", "save a sheet as PDF")
 def _sheet(context: Context, pixel: Vector) -> None:
-    """Write the static solution of the model, from its undeformed beginning, to a PDF in the working folder."""
+    """Write the static solution of the model, from its undeformed beginning, to a PDF in the working folder; with the
+    influence line that is shown."""
     if context.window is None:
         return
     from pinjoint.sheet import sheet  # it imports reportlab
 
+    shape, theory = context.document.shapes.shown, context.model.settings.theory
+    lines = [shape] if shape is not None and not shape.swings else []
     with saving():
-        path = context.window.save("pinjoint-sheet.pdf", sheet(context.model, context.model.settings.theory))
+        path = context.window.save("pinjoint-sheet.pdf", sheet(context.model, theory, lines))
     context.notice = tr("Sheet saved: {file}", file=path)

@@ -159,6 +159,21 @@ def _all_are(field: str) -> Condition:
 offer("toggle cable", "", "cable: tension only", pressed=_all_are("tension_only"))(
     _toggle("tension_only", marked("tension only, as a cable"), marked("tension and compression"))
 )
+offer(
+    "toggle strut",
+    "",
+    "strut that buckles between its hinges",
+    enabled=lambda context: any(
+        rod.bending_stiffness > 0.0 and not any(rod.fixity) for rod in context.model.tagged(Selected, Rod)
+    ),
+    pressed=_all_are("buckles"),
+)(
+    _toggle(
+        "buckles",
+        marked("buckles between its hinges at π² EI/L²"),
+        marked("does not buckle between its hinges"),
+    )
+)
 offer("toggle inextensible", "", "inextensible in first-order theory", pressed=_all_are("inextensible"))(
     _toggle("inextensible", marked("inextensible in first-order theory"), marked("extensible, by its EA"))
 )

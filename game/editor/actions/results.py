@@ -19,6 +19,7 @@ from pinjoint.components.tags import DiagramShown, Selected
 from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.editor.actions.view import toggle
 from pinjoint.editor.context import Context
+from pinjoint.editor.readouts import pinned
 from pinjoint.editor.sliders import add_slider
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import DISPLACEMENT_METHOD, FORCE_METHOD, SIMULATION, TABLE, actions_of
@@ -174,7 +175,8 @@ def _next_shape(context: Context, pixel: Vector) -> None:
     enabled=lambda context: len(context.selected) == 1,
 )
 def _next_influence_line(context: Context, pixel: Vector) -> None:
-    """The next influence line of what is selected: N, M and V of a rod, reactions or displacements of a particle."""
+    """The next influence line of what is selected: N, M and V of a rod, at the place where it was clicked in statics, else
+    at its ends and in its middle; reactions or displacements of a particle."""
     from pinjoint.documents.influence import lines_of  # it imports scipy
 
     chosen, shapes = context.selected, context.document.shapes
@@ -182,7 +184,8 @@ def _next_influence_line(context: Context, pixel: Vector) -> None:
         raise Refusal(
             "Select one rod or one particle first; then this draws its influence lines, one after the other."
         )
-    found = lines_of(context.model, chosen[0])
+    pin = pinned(context)
+    found = lines_of(context.model, chosen[0], None if pin is None else pin.distance)
     shapes.go_through(lambda: found, begins=shapes.shown not in found)
     context.view.shape = shapes.shown
 

@@ -16,6 +16,7 @@ from pinjoint.components.load import SpanLoad
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends, rigid_joints
+from pinjoint.components.round_numbers import round_down
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import BETWEEN, COVERED, Preview, drawn_positions
 from pinjoint.editor.context import Context, Gesture, tell
@@ -332,7 +333,7 @@ class DrawSpanLoad(DrawArrow):
     says = marked("{rods}: {load}, {place} from its start")
 
     def __init__(self, context: Context, pixel: Vector, rod: Rod) -> None:
-        self.places = [_along(context, rod, pixel)]
+        self.places = [along(context, rod, pixel)]
         super().__init__(context, context.view.camera.to_model(pixel), rod)
 
     @classmethod
@@ -353,7 +354,7 @@ class DrawSpanLoad(DrawArrow):
         return place_at(self.elements[0], place / self.elements[0].original_length)
 
     def finish(self, context: Context, pixel: Vector) -> None:
-        place, on_rod = _along(context, self.elements[0], pixel), pick_rod(context.model, context.view, pixel)
+        place, on_rod = along(context, self.elements[0], pixel), pick_rod(context.model, context.view, pixel)
         if self.typed or len(self.places) > 1 or on_rod is not self.elements[0] or place in self.places:
             super().finish(context, pixel)
             return
@@ -515,10 +516,17 @@ class TypePoint(Drawing):
         return Preview("rod", point, point, written.place(point, written.DIGITS))
 
 
-def _along(context: Context, rod: Rod, pixel: Vector) -> float:
-    """How far from its start (m) a pixel lies on a rod, at a line of the grid if one is near."""
-    point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
-    return round(min(max(share_at(rod, point), 0.0), 1.0) * rod.original_length, 3)
+def along(context: Context, rod: Rod, pixel: Vector, step: float = 0.0) -> float:
+    """How far from its start (m) a pixel lies on a rod, at a line of the grid if one is near.
+
+    step: else in round steps of at most so many points.
+    """
+    camera, point = context.view.camera, context.view.camera.to_model(pixel)
+    on_grid = snapped(context.model, context.view, point)
+    free = not step or math.dist(on_grid, point) * camera.scale > 1.0
+    apart = 0.001 if free else round_down(step * context.view.pixel_ratio / camera.scale)
+    place = min(max(share_at(rod, on_grid), 0.0), 1.0) * rod.original_length
+    return min(tidy(round(place / apart) * apart), rod.original_length)
 
 
 def _length_and_angle(start: Vector, end: Vector) -> str:

@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from pinjoint.components import written
-from pinjoint.components.field import Vector
+from pinjoint.components.field import Field, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, tr
+from pinjoint.components.load import DIRECTIONS, SpanLoad
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod
 from pinjoint.components.view import BETWEEN, Preview, drawn_positions
 from pinjoint.editor.context import Context, Gesture
-from pinjoint.editor.gestures.drawing import STEP, scale_said
+from pinjoint.editor.gestures.drawing import STEP, along, scale_said
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.edit.arrows import arrow_scale
+from pinjoint.systems.edit.arrows import Loaded, arrow_scale, borne_at
 from pinjoint.systems.edit.picking import Grip, inside
 from pinjoint.systems.edit.placing import Movable, check_free, snapped, snapped_to_points
 from pinjoint.systems.edit.pull import Hand
+from pinjoint.systems.edit.typed import tidy
 from pinjoint.systems.forms.properties import heading
 from pinjoint.systems.physics.pace import natural_pace
+
+LEVEL = 0.1  # cosine from which on an arrow counts as one towards or away from what bears it
 
 
 class Placing(Gesture):
@@ -108,32 +112,56 @@ class MovePoint(Placing):
 
 
 class MoveArrow(Placing):
-    """Drags the arrow of a load on a particle or a rod: its force changes, by the scale of arrows that are drawn."""
+    """Drags the arrow of a load: forces and moments change by the scale of arrows that are drawn, places along rods."""
 
-    def __init__(self, context: Context, element: Particle | Rod, pixel: Vector) -> None:
-        self._element, self._from = element, pixel
-        self._field = Particle.force if isinstance(element, Particle) else Rod.distributed_force
-        self._force = getattr(element, self._field.name)
-        self.hint = joined([tr(Placing.hint), tr("Shift: free"), scale_said(context, self._field)], BETWEEN)
-        rows = [element.row] if isinstance(element, Particle) else [end.row for end in element.ends]
-        middle = context.view.camera.to_pixels(drawn_positions(context.model)[rows].mean(axis=0))
-        out = np.subtract(pixel, middle) * [1.0, -1.0]
-        self._way = (
-            -1.0 if float(out @ self._force) < 0.0 else 1.0
-        )  # it ends at the element, and is held at its tail
+    def __init__(self, context: Context, element: Loaded, fields: Sequence[Field[Any]], pixel: Vector) -> None:
+        self._element, self._from, self._said = element, pixel, ""
+        self._values = {field: getattr(element, field.name) for field in fields}
+        self._axes = np.eye(2)  # of forces
+        said = []
+        if fields[0].unit != "m":  # a place
+            self._scale = arrow_scale(context.model, context.view, fields[0].name)
+            said = [scale_said(context, fields[0])]
+        self.hint = joined([tr(Placing.hint), tr("Shift: free"), *said], BETWEEN)
+        if isinstance(element, SpanLoad) and element.direction == DIRECTIONS[1]:
+            x, y = context.model.rods.difference[element.rod] / context.model.rods.original_length[element.rod]
+            self._axes = np.array([[x, y], [-y, x]])
+        force = np.zeros(2)
+        if fields[0].shape:
+            force = max((np.array(value) for value in self._values.values()), key=np.linalg.norm) @ self._axes
+        out = np.subtract(
+            pixel, context.view.camera.to_pixels(borne_at(context.model, context.view, element, pixel))
+        )
+        ahead = float(out @ (force * [1.0, -1.0]))
+        held_at_tail = ahead < -LEVEL * float(np.hypot(*out) * np.hypot(*force))  # it ends at the element
+        self._way = -1.0 if held_at_tail else 1.0
 
     def place(self, context: Context, pixel: Vector) -> str:
-        scale = arrow_scale(context.model, context.view, self._field.name)
-        points = np.subtract(pixel, self._from) * [1.0, -1.0] / context.view.pixel_ratio
+        for field, value in self._values.items():
+            self._said = self._drag(context, field, value, pixel)
+        return tr("{element}: {value}", element=begun(self._element.said), value=self._said)
+
+    def _drag(self, context: Context, field: Field[Any], value: Any, pixel: Vector) -> str:
+        """Change one Field from a value as a pointer there says; returns what it is then."""
+        model, view = context.model, context.view
         step = 1.0 if self.free else STEP
-        added = self._way * step * scale * np.round(points / step)
-        value = tuple(float(f"{part:.12g}") for part in np.add(self._force, added).tolist())
-        context.model.assign([self._element], self._field.name, [value])
-        return tr(
-            "{element}: {value}",
-            element=begun(self._element.said),
-            value=written.stated(value, self._field.unit),
-        )
+        if field.unit == "m":
+            rod = model.rods[self._element.rod]  # type: ignore[union-attr]
+            value = along(context, rod, pixel, 0.0 if self.free else STEP)
+        else:
+            points = np.subtract(pixel, self._from) * [1.0, -1.0] / view.pixel_ratio
+            added = step * self._scale * np.round(points / step)
+            if field.shape:
+                value = tuple(tidy(part) for part in (value + self._way * self._axes @ added).tolist())
+            else:
+                value = tidy(value - float(added[0]))  # above what bears it, counter-clockwise is to the left
+        model.assign([self._element], field.name, [value])
+        return written.length(value) if field.unit == "m" else written.stated(value, field.unit)
+
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        """What it is now, at the pointer."""
+        at = context.view.camera.to_model(pixel)
+        return Preview("", at, at, self._said)
 
 
 class PullParticle(Gesture):

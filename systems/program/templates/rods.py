@@ -145,6 +145,7 @@ def stored():
     largest = max(largest, abs(axial_force))
     stiffest = max(stiffest, 1.0 / flexibility)
     elastic += axial_force * axial_force * flexibility
+    insert(of_axes)
     if BENDS:
         insert(moments)
         largest = max(largest, abs(moment_start) / rest, abs(moment_end) / rest)

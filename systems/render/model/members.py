@@ -137,12 +137,16 @@ def draw_span_loads(sheet: Sheet) -> None:
     largest = sheet.model.share * max(float(np.hypot(*force.T).max()) for force in (spans.first, spans.last))
     spans = spans.some(np.isin(spans.row, sheet.rods))
     spread = (spans.first.any(axis=1) | spans.last.any(axis=1)) & (spans.end > spans.start)
-    _draw_rows(sheet, spans.some(spread), largest)
+    for own in (spans.load < 0, spans.load >= 0):
+        _draw_rows(sheet, spans.some(spread & own), largest)
     _draw_points(sheet, spans)
 
 
 def _draw_rows(sheet: Sheet, spans: Spans, largest: float) -> None:
-    """Rows of arrows, of the largest of which so much is told; of rods' own that are alike once, of others at both ends."""
+    """Rows of arrows, of the largest of which so much is told; of rods' own, which are alike, once, of others at both ends.
+
+    Either all are of rods themselves or none is.
+    """
     if not 0 < len(spans.row) <= MOST:
         return
     force = np.stack([spans.first, spans.last], axis=1) * sheet.model.share
@@ -161,12 +165,13 @@ def _draw_rows(sheet: Sheet, spans: Spans, largest: float) -> None:
     tails, rows = tips - level[:, None] * every, spans.row[which]
     first = np.flatnonzero((which[:-1] == which[1:]) & ~shifted[which[1:]])
     line, of_line = (tails[first], tails[first + 1]), ("rods", rows[first])  # through the tails
-    sheet.marks.append(Strokes(*line, 1.25 * u, colour, of_line))
+    table, whose = ("rods", rows) if spans.load[0] < 0 else ("span_loads", spans.load[which])
+    sheet.marks.append(Strokes(*line, 1.25 * u, colour, (table, whose[first])))
     sheet.occupancy.line(*line, STRONG, of_line)
     sheet.occupancy.parts.add(of_line, *line, u)
     seen = level > _NO_ARROW * u
-    of = "rods", rows[seen]
-    draw_arrows(sheet, of, tails[seen], every[seen], level[seen], colour, of, 1.25)
+    of = table, whose[seen]
+    draw_arrows(sheet, of, tails[seen], every[seen], level[seen], colour, ("rods", rows[seen]), 1.25)
     sheet.explain("load per length", tails, tips)
     told = _told(sheet, spans)
     for k in [k for k in np.unique(which).tolist() if k in told]:
@@ -190,7 +195,7 @@ def _draw_points(sheet: Sheet, spans: Spans) -> None:
     near, load = (np.abs(at) < _FAR).all(axis=1), spans.load
     some = np.flatnonzero(near & spans.force.any(axis=1))[:MOST]
     if len(some):
-        force, of, rows = share * spans.force[some], ("rods", spans.row[some]), spans.row[some]
+        force, of, rows = share * spans.force[some], ("span_loads", load[some]), spans.row[some]
         size = np.maximum(np.hypot(*force.T), 1e-300)
         along = force * [1.0, -1.0] / size[:, None]
         largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
@@ -219,13 +224,12 @@ def _draw_points(sheet: Sheet, spans: Spans) -> None:
         moment, radius = share * spans.moment[some], np.full(len(some), _ARC["load"] * u)
         draw_arcs(
             sheet,
-            ("rods", spans.row[some]),
+            ("span_loads", load[some]),
             at[some],
             radius,
             moment,
             colour,
             "span_loads.moment",
-            parts=load[some],
         )
         sheet.explain("load moment", at[some], at[some])
         for k, value in zip(some.tolist(), moment.tolist(), strict=True):
@@ -344,12 +348,11 @@ def draw_arcs(
     key: str,
     middle: float = np.pi / 2.0,
     sweep: float = _SWEEP,
-    parts: Rows | None = None,
 ) -> None:
     """Curved arrows about points (n, 2), of radii (n,), that turn as moments (n,) do, counter-clockwise if positive.
 
     They reach so far (sweep) around a middle, in radians: the usual ones are open below. key: of these parts of the
-    picture, beside the rows of their elements, or others.
+    picture, beside the rows of their elements.
     """
     if not len(at):
         return
@@ -360,13 +363,13 @@ def draw_arcs(
     angle = middle + turn[:, None] * angle  # from the right, over the top
     points = at[:, None] + radius[:, None, None] * np.stack([np.cos(angle), -np.sin(angle)], axis=2)
     first, last = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2)
-    every, own = np.repeat(rows, _PIECES), rows if parts is None else parts
+    every = np.repeat(rows, _PIECES)
     forward = points[:, -1] - points[:, -2]
     forward /= np.hypot(*forward.T)[:, None]
     neck, across = points[:, -1], forward[:, ::-1] * [-1.0, 1.0]
     tip, barb = neck + head[:, None] * forward, 0.5 * head[:, None] * across
-    sheet.occupancy.line(first, last, STRONG, (key, np.repeat(own, _PIECES)))
-    for ends in ((first, last, np.repeat(own, _PIECES)), (neck - barb, neck + barb, own), (neck, tip, own)):
+    sheet.occupancy.line(first, last, STRONG, (key, every))
+    for ends in ((first, last, every), (neck - barb, neck + barb, rows), (neck, tip, rows)):
         sheet.occupancy.parts.add((key, ends[2]), *ends[:2], u)
     sheet.marks.append(Strokes(first, last, 1.75 * u, colour, (table, every)))
     sheet.marks.append(Fills(np.stack([tip, neck + barb, neck - barb], axis=1), colour, (table, rows)))

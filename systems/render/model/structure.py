@@ -20,7 +20,7 @@ from pinjoint.systems.render.labels.occupancy import FAINT, STRONG
 from pinjoint.systems.render.labels.placing import Label, half_size
 from pinjoint.systems.render.marks import Discs, Panel, Points, Rows, Strokes, Truths, Values
 from pinjoint.systems.render.model.sheet import DIRECTIONS, FEW, MANY, Sheet
-from pinjoint.systems.render.model.values import BACKING, reach
+from pinjoint.systems.render.model.values import BACKING, FIRST, by_arrows, half_sizes, reach, write
 from pinjoint.systems.render.symbols import RIM, dashed
 from pinjoint.systems.render.theme import Colour, faded
 
@@ -256,6 +256,13 @@ def draw_shape(sheet: Sheet) -> None:
     dots = places[:joints][(moving & sheet.sees(places))[:joints]]
     if len(dots):
         sheet.marks.append(Discs(dots, np.full(len(dots), _SHAPE_RADIUS * sheet.unit), colour, colour))
+    for number, (text, place, away) in enumerate(shape.values):
+        first, last = sheet.view.camera.to_pixels(np.array([place, place + away]))
+        if sheet.sees(last[None])[0]:
+            near = by_arrows(half_sizes(sheet, [text])[0], first, last, 3.0 * sheet.unit)
+            write(
+                sheet, text, near, sheet.theme.text, ("shape.value", number), None, rank=FIRST - np.hypot(*away)
+            )
 
 
 def _lines_of_shape(

@@ -1,0 +1,160 @@
+"""Load cases: which loads act together, and by what factors combinations let them act.
+
+Every load belongs to a case. What stands in fields of elements is of the case "permanent": forces, accelerations, weight,
+what acts along rods, their warmth and lack of fit, and displacements of rigid supports. A combination has factors of
+cases, 0 of those that it leaves out, "permanent" too; without one all cases act once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinjoint.components.field import LARGEST, FieldError
+from pinjoint.components.language import begun, marked, tr
+from pinjoint.components.mistake import WrongValue
+from pinjoint.components.particle import of_rigid_supports, turned_supports
+from pinjoint.components.wording import cut, quoted
+from pinjoint.components.world import World
+
+Combinations = Mapping[str, Mapping[str, float]]
+PERMANENT = marked("permanent")
+TABLES = ("loads", "span_loads")  # of loads
+# What factors follow from.
+SOURCES = " ".join(["settings.combination settings.combinations", *(f"{name}.case" for name in TABLES)])
+_LONGEST = 40  # letters of a name
+
+
+def check_case(name: str, where: str) -> str:
+    """The name of a case or combination, or FieldError."""
+    if not name.strip() or len(name) > _LONGEST:
+        raise FieldError(
+            "{where}: the name is {name}; it must have 1 to {most} letters.",
+            where=where,
+            name=quoted(name),
+            most=_LONGEST,
+        )
+    return name.strip()
+
+
+def check_combinations(value: Any, where: str) -> Combinations:
+    """Factors of cases by combination, or FieldError."""
+    if not isinstance(value, Mapping) or not all(isinstance(name, str) for name in value):
+        raise FieldError(
+            '{where}: combinations are {value}; they must be like {{"ULS": {{"permanent": 1.35, "wind": 1.5}}}}.',
+            where=where,
+            value=quoted(value),
+        )
+    found = {check_case(name, where): _check_factors(name, factors, where) for name, factors in value.items()}
+    return MappingProxyType(found)
+
+
+def _check_factors(combination: str, value: Any, where: str) -> Mapping[str, float]:
+    if not isinstance(value, Mapping) or not all(isinstance(name, str) for name in value):
+        raise FieldError(
+            "{where}: the combination '{name}' is {value}; it must give cases factors, like {{\"permanent\": 1.35}}.",
+            where=where,
+            name=cut(combination),
+            value=quoted(value),
+        )
+    for case, factor in value.items():
+        is_number = isinstance(factor, int | float | np.integer | np.floating) and not isinstance(factor, bool)
+        if not is_number or not abs(factor) <= LARGEST:
+            raise FieldError(
+                "{where}: in the combination '{name}' the factor of '{case}' is {factor}; it must be a number.",
+                where=where,
+                name=cut(combination),
+                case=cut(case),
+                factor=quoted(factor),
+            )
+    return MappingProxyType({check_case(case, where): float(factor) for case, factor in value.items()})
+
+
+def cases(world: World) -> list[str]:
+    """The cases of a model: "permanent", then those of its loads in the order of these."""
+    return list(dict.fromkeys([PERMANENT, *(case for name in TABLES for case in world.tables[name].case)]))
+
+
+def factors(world: World) -> Mapping[str, float] | None:
+    """The factors of the combination that is chosen, 0 of cases that it leaves out; None: all cases act once."""
+    settings = world.tables["settings"]
+    chosen = settings.combination[0]
+    return settings.combinations[0].get(chosen) if chosen else None
+
+
+def permanent(world: World) -> float:
+    """The factor of what stands in fields of elements."""
+    found = factors(world)
+    return 1.0 if found is None else found.get(PERMANENT, 0.0)
+
+
+def factor_of_each(world: World, table: str) -> NDArray[np.float64]:
+    """The factor of each load of a table, (loads,)."""
+    loads, found = world.tables[table], factors(world)
+    if found is None:
+        return np.ones(loads.count)
+    return np.array([found.get(case, 0.0) for case in loads.case], dtype=np.float64)
+
+
+def unknown_case(world: World) -> str:
+    """The sentence about a case of the chosen combination that no load is of; "" if there is none."""
+    known, chosen = cases(world), factors(world) or {}
+    for case in [case for case in chosen if case not in known][:1]:
+        return tr(
+            "The combination '{name}' names the case '{case}', which no load is of; there are {known}.",
+            name=cut(world.tables["settings"].combination[0]),
+            case=cut(case),
+            known=", ".join(known),
+        )
+    return ""
+
+
+def settled(world: World) -> NDArray[np.float64]:
+    """How far rigid supports are moved and turned, in statics: by displacements given and by loads, (particles, 3)."""
+    particles, loads = world.tables["particles"], world.tables["loads"]
+    moved = np.column_stack([particles.storage("displacement"), particles.storage("rotation")])
+    moved *= permanent(world)
+    if _settlements(world).any():
+        np.add.at(moved, loads.on, factor_of_each(world, "loads")[:, None] * _settlements(world))
+    turned = np.where(particles.fixed_rotation, moved[:, 2], 0.0)
+    return np.column_stack([of_rigid_supports(world, moved[:, :2]), turned])
+
+
+def _settlements(world: World) -> NDArray[np.float64]:
+    loads = world.tables["loads"]
+    return np.column_stack([loads.settlement, loads.settled_rotation])
+
+
+def idle_settlement(world: World, *, moving: bool) -> str:
+    """The sentence about a settlement that moves no rigid support, or none while time passes; "" if there is none."""
+    given, loads, particles = _settlements(world) != 0.0, world.tables["loads"], world.tables["particles"]
+    for row in np.flatnonzero(given.any(axis=1))[:1].tolist() if moving else ():
+        load = world.describe(loads[row])
+        return tr("Settlements act in statics only: while time passes, {load} moves no support.", load=load)
+    turned = turned_supports(world) & particles.fixed.any(axis=1)
+    held = np.column_stack([particles.fixed | turned[:, None], particles.fixed_rotation])
+    for row in np.flatnonzero((given & ~held[loads.on]).any(axis=1))[:1].tolist():
+        return tr(
+            "{load}: no rigid support holds {particle} where it settles, so it moves nothing there.",
+            load=begun(world.describe(loads[row])),
+            particle=world.describe(particles[int(loads.on[row])]),
+        )
+    return ""
+
+
+def choose(world: World, case: str | None, combination: str | None) -> None:
+    """Let one combination act in a model, "": all cases once; or one case alone. Raises ValueError."""
+    settings = world.tables["settings"][0]
+    if case is not None and combination is not None:
+        raise WrongValue("Choose a case or a combination, not both.")
+    if case is not None:
+        if case not in (known := cases(world)):
+            raise WrongValue(
+                "There is no load case '{name}'; choose one of {known}.", name=cut(case), known=", ".join(known)
+            )
+        settings.combinations = {case: {case: 1.0}}
+    settings.combination = case or combination or ""
