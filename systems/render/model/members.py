@@ -133,7 +133,7 @@ def gaps(lengths: Values, unit: float) -> Values:
 def draw_span_loads(sheet: Sheet) -> None:
     """What acts between the ends of rods: rows of arrows on the side from which they push, single arrows, curved ones."""
     spans, model = Spans.of(sheet.model), sheet.model
-    if not len(spans.row):
+    if not len(spans.row) or model.share == 0.0:  # nothing holds the structure, and it carries nothing
         return
     acts = np.append(factor_of_each(model, "span_loads"), permanent(model))[spans.load, None]
     force, first, last = acts * spans.force, acts * spans.first, acts * spans.last
