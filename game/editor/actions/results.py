@@ -239,13 +239,8 @@ def _next_combination(context: Context, pixel: Vector) -> None:
         raise Refusal(
             "There is one load case only. The boxes of a load say its case: select what bears it and press Return."
         )
-    following = names.index(settings.combination) + 1
-    if (
-        following == len(names)
-        and settings.combinations
-        and not context.view.envelope
-        and context.scene == STATICS
-    ):
+    following = 0 if context.view.envelope else names.index(settings.combination) + 1
+    if following == len(names) and settings.combinations and context.scene == STATICS:
         context.view.envelope = True
     else:
         _let_act(context, names[following % len(names)])
