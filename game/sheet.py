@@ -23,6 +23,7 @@ from pinjoint.figures import diagram_titles, figure, printed, shape, signs
 from pinjoint.results import Results, envelope_of_reactions, envelope_of_rods
 from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.render.backends.paper import LAYOUTS, Block, Layout, as_paper, in_rows
+from pinjoint.systems.statics.state import Start
 from pinjoint.tables import Column, Table
 
 _FLAT = 1.6  # times as wide as high: of such structures each figure has a row of its own
@@ -58,8 +59,8 @@ class Solved:
         self.model = copy = load(document(model))
         copy.settings.theory = theory
         copy.delete(list(copy.grids))
-        strain = copy.rods.plastic_strain.copy() if copy.clock.time == 0.0 else np.zeros(copy.rods.count)
-        statics = Statics(copy, lambda: strain)
+        permanent = Start.present(copy).permanent * (copy.clock.time == 0.0)
+        statics = Statics(copy, lambda: permanent)
         settlement = statics.settlement
         if settlement is None or not statics.balanced:
             reason = statics.message
@@ -68,7 +69,7 @@ class Solved:
         self.said = joined([settlement.message, note])
         copy.show(statics)
         self.results = Results.of(copy)
-        self.envelope = Envelopes(copy, lambda: strain).envelope if enveloped else None
+        self.envelope = Envelopes(copy, lambda: permanent).envelope if enveloped else None
 
 
 def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> list[Flowable]:

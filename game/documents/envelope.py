@@ -25,11 +25,11 @@ class NoEnvelope(Mistake, ValueError):
 class Envelopes:
     """The envelope of a model, found anew when it is asked for after an edit.
 
-    strain: the plastic strain of its undeformed beginning.
+    permanent: plastic strain and rotations of its undeformed beginning, (rods, 3).
     """
 
-    def __init__(self, model: Model, strain: Callable[[], Column]) -> None:
-        self._model, self._strain = model, strain
+    def __init__(self, model: Model, permanent: Callable[[], Column]) -> None:
+        self._model, self._permanent = model, permanent
         self._found: tuple[int, Envelope | None] = -1, None
 
     @property
@@ -53,7 +53,7 @@ class Envelopes:
         for name in self._model.settings.combinations:
             copy = self._model.undeformed_copy()
             copy.settings.combination = name
-            statics = Statics(copy, self._strain)
+            statics = Statics(copy, self._permanent)
             if not statics.balanced:
                 unsolved.append(name)
                 continue

@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 69_837,
+    "lines": 70_396,
     "files": 383,
-    "names": 3_868,  # functions, classes and constants of modules
-    "public names": 2_294,
-    "numbers": 1_498,  # other than 0, 1 and 2, in constants and defaults
+    "names": 3_888,  # functions, classes and constants of modules
+    "public names": 2_313,
+    "numbers": 1_503,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 56_632,
+    "lines of tests": 56_891,
 }
 
 
