@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 70_396,
+    "lines": 70_769,
     "files": 383,
-    "names": 3_888,  # functions, classes and constants of modules
-    "public names": 2_313,
+    "names": 3_904,  # functions, classes and constants of modules
+    "public names": 2_325,
     "numbers": 1_503,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 56_891,
+    "lines of tests": 57_124,
 }
 
 
