@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components import written
 from pinjoint.components.field import LARGEST, FieldError
 from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.mistake import WrongValue
@@ -80,10 +81,50 @@ def cases(world: World) -> list[str]:
 
 
 def factors(world: World) -> Mapping[str, float] | None:
-    """The factors of the combination that is chosen, 0 of cases that it leaves out; None: all cases act once."""
+    """The factors of the combination or case that is chosen, 0 of cases that it leaves out; None: all cases act once."""
     settings = world.tables["settings"]
     chosen = settings.combination[0]
-    return settings.combinations[0].get(chosen) if chosen else None
+    return settings.combinations[0].get(chosen, {chosen: 1.0}) if chosen else None
+
+
+def choices(world: World) -> list[str]:
+    """What can be chosen to act: "", all cases, then combinations, then single cases; [] where there is no choice."""
+    known = cases(world)
+    combinations = list(world.tables["settings"].combinations[0])
+    alone = [case for case in known if case not in combinations] if len(known) > 1 else []
+    return ["", *combinations, *alone] if combinations or alone else []
+
+
+def alone(world: World) -> str:
+    """The case that acts alone, of which loads that are drawn then are; "" if combinations or all cases act."""
+    settings = world.tables["settings"]
+    return "" if settings.combination[0] in settings.combinations[0] else str(settings.combination[0])
+
+
+def case_told(world: World, table: str, row: int) -> str:
+    """Behind the value of a load, a row of a table or of a Field of it: its case, " (wind)", where others act, too."""
+    name = table.partition(".")[0]
+    case = PERMANENT if name not in TABLES or alone(world) else world.tables[name].case[row]
+    return "" if case == PERMANENT else f" ({tr(case)})"
+
+
+def said(world: World, name: str) -> str:
+    """What acts where a combination or case is chosen, for a person: "ULS", "case wind" or "all cases × 1"."""
+    if not name:
+        return tr("all cases × 1")
+    return name if name in world.tables["settings"].combinations[0] else tr("case {case}", case=tr(name))
+
+
+def acting(world: World) -> str:
+    """What acts now: "ULS: 1.35 permanent + 1.5 wind"; "" where there is nothing to choose."""
+    chosen = world.tables["settings"].combination[0]
+    if not choices(world):
+        return ""
+    named = said(world, chosen)
+    if chosen not in world.tables["settings"].combinations[0]:
+        return named
+    parts = [f"{written.given(factor)} {tr(case)}" for case, factor in (factors(world) or {}).items() if factor]
+    return f"{named}: {' + '.join(parts) or '0'}".replace("+ −", "− ")
 
 
 class Acting(NamedTuple):

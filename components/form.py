@@ -27,7 +27,7 @@ class Box:
     under. unit: of the number in it. explanation: shown while it is selected. elements: that it is for. accepts: what may
     be typed. words: that it takes; besides numbers, or the only ones. opened: what it contained at first. held: when
     selected. note: shown in it while unchanged: "mixed", "automatic". problem: why its text is refused. caret: characters
-    before it. marked: typing replaces all of its text.
+    before it. marked: typing replaces all of its text. across: how many boxes share its row; 0: as their titles have room.
     """
 
     title: str
@@ -45,6 +45,7 @@ class Box:
     problem: str = ""
     caret: int = 0
     marked: bool = False
+    across: int = 0
 
     @property
     def said_title(self) -> str:

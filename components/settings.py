@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.cases import Combinations, check_combinations
+from pinjoint.components.cases import Combinations, cases, check_combinations
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import LARGEST, Field, FieldError, Vector, derived, if_known, look
 from pinjoint.components.handle import Handle
@@ -129,16 +129,17 @@ class Settings(Handle):
         checker=check_combinations,
     )
     combination: Field[str] = Field(
-        dtype=str, doc="The one that acts, of these; none: all load cases, each with the factor 1."
+        dtype=str,
+        doc="The one that acts, of these, or a load case alone; none: all load cases, each with the factor 1.",
     )
     automatic_displacement_scale: Field[float] = derived(default=1.0, doc="The scale that suits the model.")
     displacement_scale: Field[float] = derived(default=1.0, doc="As given, or the automatic one.")
 
     @classmethod
     def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
-        """The combination that acts is one of those there are; without it all cases act."""
+        """The combination that acts is one of those there are, or a load case; without it all cases act."""
         settings = table[0]
-        if settings.combination == "" or settings.combination in settings.combinations:
+        if settings.combination in ("", *settings.combinations, *cases(table.world)):  # type: ignore[arg-type]
             return
         if "combination" not in changed:
             settings.combination = ""

@@ -10,8 +10,10 @@ from pinjoint.components.camera import LEAST_MARGIN, Rectangle, Viewport
 from pinjoint.components.field import Role
 from pinjoint.components.handle import Handle
 from pinjoint.components.round_numbers import round_down
+from pinjoint.components.toolbar import Tool
 
 WIDTH, HEIGHT, GAP, EDGE = 226.0, 36.0, 4.0, 8.0  # points, of a slider, between and around them
+CHOICES = 32.0  # points, of a row of choices above them
 PAD, BUTTON = 10.0, 30.0  # points: beside the track, and the width of the button at its right
 SUPPORT, ARROW, NARROW = 30.0, 44.0, 620.0  # points about a particle; and the width of a narrow canvas
 SHARE = 0.6  # of the height of a canvas that sliders take at most
@@ -133,11 +135,12 @@ class Place(Rectangle):
 class SliderStack:
     """Controls above each other at the lower left of a canvas, the first at the bottom, `above` points up.
 
-    Those for which there is no room are left out.
+    Those for which there is no room are left out. choices: buttons in a row above them, of which one is pressed.
     """
 
     controls: tuple[Control, ...] = ()
     above: float = 0.0
+    choices: tuple[Tool, ...] = ()
 
     def reserve(self, canvas: Viewport, unit: float, margin: float, *, arrows: bool) -> int:
         """Pixels of the height to be left free of a model, below which there is a margin (points) anyway.
@@ -150,6 +153,7 @@ class SliderStack:
         first += ARROW if arrows or canvas.width < NARROW * unit else 0.0
         least = min(margin, LEAST_MARGIN * canvas.height / unit)
         missing = max(first - least, 0.0) + (len(self.controls) - 1) * (HEIGHT + GAP)
+        missing += bool(self.choices) * CHOICES
         kept = 1.0 - LEAST_MARGIN if arrows and least < margin else 1.0  # the margin shrinks with the room
         return round(missing / kept * unit)
 

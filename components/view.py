@@ -16,7 +16,7 @@ from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod, bends
-from pinjoint.components.slider import ARROW, SUPPORT, Place, SliderStack
+from pinjoint.components.slider import ARROW, CHOICES, EDGE, GAP, SUPPORT, Place, SliderStack
 from pinjoint.components.toolbar import Menu, Tool, Toolbar
 
 CONVENTIONS = TEXTBOOK, THESIS = ("textbook", "thesis")  # of the force method
@@ -281,6 +281,7 @@ class View:
     1 to −1, that is drawn now.
     names: all elements have their names, not only few.
     utilisation: rods show in colours how much of their strength they bear.
+    envelope: diagrams show what is most and least in all combinations.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     free_bodies: rods and joints are drawn apart, with the forces on each.
     wanted: which of our own a person switched on among them: theory beside the run, its energy, its events.
@@ -325,6 +326,7 @@ class View:
     since: dict[str, int] = field(default_factory=dict)
     largest_force: float = 0.0
     utilisation: bool = False
+    envelope: bool = False
     names: bool = False
     wanted: frozenset[str] = frozenset()
     free_bodies: bool = False
@@ -469,6 +471,13 @@ class View:
         beside = not self.shares or panels.width < c.width or panels == c
         sliders = self.sliders if self._has_sliders else SliderStack()
         return sliders.places(c if beside else replace(c, height=c.height - panels.height), self.pixel_ratio)
+
+    @property
+    def choices_place(self) -> Rectangle:
+        """Where choices are: above the sliders, up to the right edge of the canvas."""
+        c, u, places = self.canvas, self.pixel_ratio, self.slider_places
+        bottom = places[-1].top if places else c.bottom - self.sliders.above * u
+        return Rectangle(c.left + EDGE * u, bottom - CHOICES * u, c.width - 2.0 * EDGE * u, (CHOICES - GAP) * u)
 
     def slider_at(self, pixel: Vector) -> Place | None:
         """The slider under a pixel."""

@@ -670,6 +670,17 @@ def called(noun: str, name: Any) -> str:
     return as_said(noun, name) if name.startswith(noun + " ") else joined([tr(noun), name])
 
 
+@contextmanager
+def esper_kept() -> Iterator[None]:
+    """The esper world that is current before the `with` is current again after it."""
+    before = esper.current_world
+    try:
+        yield
+    finally:
+        if esper.current_world != before:
+            esper.switch_world(before)
+
+
 def _delete_context(context: str) -> None:
     if esper.current_world == context:
         esper.switch_world("default")

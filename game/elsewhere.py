@@ -42,6 +42,8 @@ UNITS = {unit.name: unit for unit in (RASTER, PARTING, EVENTS, HORIZONS, PILES, 
 # Of `python -P -c`.
 START = "import sys; sys.path[:] = sys.argv[1:]; from pinjoint.elsewhere import main; main()"
 INTERVAL = 0.05  # s between two looks
+# What edits and steps need, which takes several frames to import.
+LIBRARIES = ("pinjoint.systems.plasticity.kernels", "scipy.spatial", "scipy.sparse.linalg")
 _ENDING = 0.5  # s that what a thread is at may take before the window goes without it
 
 _HOME = Path(__file__).parent
@@ -69,13 +71,13 @@ class Work:
         """Why it cannot be had from the other process; "" if it can, as far as is known."""
         if self.ended is None or self.module is None or self.module.is_compiled():
             return ""
-        return self.ended or tr("what was compiled was not kept")
+        return self.ended or tr("what was got ready was not kept")
 
 
 def tell_slower(problem: str) -> None:
-    """Say why runs go on without machine code, if they do."""
+    """Say why runs go on in their slow form, if they do."""
     if problem:
-        cache.tell(tr("Runs go on without machine code, and slower: {problem}.", problem=problem))
+        cache.tell(tr("Runs go on, but more slowly than they could: {problem}.", problem=problem))
 
 
 class Elsewhere:
@@ -118,12 +120,13 @@ class Elsewhere:
     # --- in the thread -------------------------------------------------------------------------------
 
     def _run(self) -> None:
-        self._look()
         read_sources([integrator for integrator in INTEGRATORS.values() if integrator.mod is None])
-        for library in ("pinjoint.systems.plasticity.kernels", "scipy.spatial", "scipy.sparse.linalg"):
-            importlib.import_module(library)  # what edits and steps need, which takes several frames
+        libraries = list(LIBRARIES)
         while not self._closed.wait(INTERVAL):
             self._look()
+            modules = [work.module for work in self.needed if work.module is not None]
+            if libraries and modules and all(map(self.is_ready, modules)):  # what a run begins with goes before
+                importlib.import_module(libraries.pop(0))
 
     def _look(self) -> None:
         if self._compiles:
@@ -131,20 +134,24 @@ class Elsewhere:
         self._load()
 
     def _load(self) -> None:
-        """Load what is compiled, or else rewrite what will be interpreted; one program at a time."""
-        wanted = [work.module for work in (*self.needed, *self.later) if work.module is not None]
-        for module in (*interpreted_here(), *wanted):
+        """Rewrite what a run begins with, interpreted; then load what is compiled, or else rewrite it; one at a time."""
+        works = self.needed, self.later
+        needed, later = ([work.module for work in some if work.module is not None] for some in works)
+        unready = [module for module in needed if not self.is_ready(module)]
+        for module in (*unready, *interpreted_here(), *needed, *later):
             try:
                 if module.is_loaded:
                     continue
-                if self.can_load and module.is_compiled() and module.load_kept():
+                # What has to be rewritten is, before anything is loaded, which takes its time.
+                compiled = module not in unready and self.can_load and module.is_compiled()
+                if compiled and module.load_kept():
                     return
                 if not self.is_ready(module):
                     module.rewrite_all()
                     return
             except Exception as error:  # such as a compiler that is damaged
                 self.can_load = False
-                tell_slower(tr("machine code cannot be loaded ({error})", error=error))
+                tell_slower(tr("what makes them fast cannot be loaded ({error})", error=error))
                 return
 
     def _compile(self) -> None:
@@ -175,7 +182,7 @@ class Elsewhere:
     def _note_end(self, process: subprocess.Popen[str]) -> None:
         """Note what the other process did; a job at which it ended by itself is not tried again."""
         said = process.communicate()[0].splitlines()
-        status = tr("the process that compiles ended with status {status}", status=process.returncode)
+        status = tr("the process that gets it ready ended with status {status}", status=process.returncode)
         for work, ended in zip(self._at_work, [*said, *([status] if process.returncode else [])], strict=False):
             work.ended = ended
 

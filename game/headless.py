@@ -23,6 +23,7 @@ from pinjoint.components.table import Table
 from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.components.view import View
 from pinjoint.components.wording import missing, quoted
+from pinjoint.components.world import esper_kept
 from pinjoint.documents import models
 from pinjoint.documents.open_documents import ModelFile, Source, file_of
 from pinjoint.editor.context import Context, Scene
@@ -75,11 +76,12 @@ class Headless(Context):
         """Open a model file, a bundled model by name, or a document. Raises ModelError.
 
         systems: further ones for this session. mods: folders of mods to load first, for the whole program;
-        raises ModError if one of them cannot be used.
+        raises ModError if one of them cannot be used. The esper world that was current is so again.
         """
         if folders := list(mods):
             load_all(folders)
-        return cls(models.load(source), systems, file=file_of(source))
+        with esper_kept():
+            return cls(models.load(source), systems, file=file_of(source))
 
     # --- the model ---------------------------------------------------------------------------------
 

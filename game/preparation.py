@@ -122,6 +122,7 @@ class Preparation(System, Readiness):
         asked, works = needed | later, self._works
         for job in islice((job for job in asked if job not in works), 1):  # finding it takes a part of a frame
             works[job] = Work(job, _module_of(job, asked[job]), b"" if job[0] in UNITS else None)
+        self.finding = not works.keys() >= asked.keys()
         if all(job in works for job in needed):  # they are compiled by one process
             self.elsewhere.needed = [works[job] for job in needed]
             self.elsewhere.later = [works[job] for job in later if job in works]

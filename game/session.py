@@ -32,7 +32,7 @@ from pinjoint.editor.sliders import sliders_of
 from pinjoint.editor.view_model import exaggerate, offer_tools, show
 from pinjoint.headless import Headless, forward
 from pinjoint.lessons.course import Course, take_up_lesson
-from pinjoint.mods.mod import blamed_on_mod
+from pinjoint.mods.mod import blamed_on_mod, check_mods, switched_off
 from pinjoint.scripts.expectation import check
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.base import Phase, System
@@ -131,10 +131,13 @@ class Session(Headless):
         return self.simulation.planned(scene or self.scene)
 
     def act(self, name: str, pixel: Vector | None = None) -> None:
-        """Perform a named action with the pointer at a pixel; what it refuses is said in `notice`."""
+        """Perform a named action with the pointer at a pixel; what it refuses is said in `notice`.
+
+        Raises ValueError if there is none, and ModError if a mod fails meanwhile, which is switched off then.
+        """
         if name not in ACTIONS:
             raise ValueError(missing(marked("actions"), name, ACTIONS))
-        action = ACTIONS[name]
+        action, failed = ACTIONS[name], switched_off()
         if not action.while_drawing:
             self.leave_gesture()
         if not action.in_menu:
@@ -150,6 +153,8 @@ class Session(Headless):
         if not self.view.steady or self.gesture is not gesture:  # while a hand drags, frames do
             offer_tools(self)
         self._make_room()
+        if self.window is None:  # in one, the fault is shown
+            check_mods(failed)
 
     def _leave_document(self) -> None:
         """Another document comes into use."""
@@ -375,14 +380,16 @@ class Session(Headless):
     # --- frames --------------------------------------------------------------------------------------
 
     def frame(self, elapsed: float) -> Frame:
-        """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
-        frame = Frame(self, forward("elapsed", elapsed))
+        """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError, ModError."""
+        frame, failed = Frame(self, forward("elapsed", elapsed)), switched_off()
         try:
             for phase in Phase:
                 self.schedule.run(phase, frame)
         except Exception as error:
             if not blamed_on_mod(error):
                 raise
+        if self.window is None:  # in one, the fault is shown
+            check_mods(failed)
         return frame
 
     def update_view(self, elapsed: float = 0.0) -> None:

@@ -124,7 +124,7 @@ def lines(run: Run) -> Iterator[str]:
         yield tr("errors as shares of the largest value, measured by a run with finer steps:")
         yield several(f"{title} {value}" for title, value in known.items())
     yield tr(
-        "computed in {computing} s, compiled in {compiling} s",
+        "computed in {computing} s, ready after {compiling} s",
         computing=as_written(run["wall_seconds"]),
         compiling=as_written(run["compile_seconds"]),
     )

@@ -20,6 +20,7 @@ from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod
 from pinjoint.components.section import NAMES, given_by
+from pinjoint.components.settings import Settings
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.table import fields_of
 from pinjoint.components.wording import cut, is_broken, missing, quoted, remedy
@@ -95,7 +96,9 @@ def _parsed(document: Any) -> Model:
     model.foreign_versions = dict(document.get(MODS, {}))
     model.title = _text(document, "title")
     model.description = _text(document, "description")
-    for name, kind in SECTIONS.items():
+    for name, kind in sorted(
+        SECTIONS.items(), key=lambda item: item[1] is Settings
+    ):  # which may name a load case
         if name in document:
             _read(model, _section(f"$.{name}", kind, document[name]))
     if FOREIGN in document:

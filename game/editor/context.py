@@ -50,10 +50,11 @@ class Waiting:
 class Readiness:
     """Which simulations are too large to go on before another process has compiled their program; without a window none.
 
-    awaited: the one that was to go on, and waits.
+    awaited: the one that was to go on, and waits. finding: what may be needed is being found, a part in every frame.
     """
 
     awaited: Simulation | None = None
+    finding = False
 
     def waits_for(self, simulation: Simulation) -> Waiting | None:
         """What a simulation waits for; None if it can go on, interpreted or compiled."""

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from pinjoint.components import written
+from pinjoint.components.cases import choices, said
 from pinjoint.components.field import Field
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, decimals, joined, marked, tr
@@ -18,6 +19,7 @@ from pinjoint.components.rod import Rod
 from pinjoint.components.round_numbers import round_up
 from pinjoint.components.settings import Settings
 from pinjoint.components.slider import Aim, Control, SetSliders, Slider, SliderStack
+from pinjoint.components.toolbar import Tool
 from pinjoint.documents.sliders import unmovable
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import Refusal
@@ -26,6 +28,7 @@ from pinjoint.systems.input.actions import LIVE
 
 # The keys of the controls of the displacement scale and, in statics, of the last load step.
 SCALE, LOAD = -1, -2
+SHOW = "show combination"  # the action of what can be chosen to act
 HIGH = 400.0  # points of a canvas that has room for that of the load
 LOADS = Slider((), 0.0, 2.0)  # the range of that, unless the model needs more
 SCALES = Slider((), 1.0, 1000.0, logarithmic=True)  # of displacements, unless the model needs more
@@ -60,7 +63,24 @@ def sliders_of(context: Context) -> SliderStack:
         value = f"× {written.given(factor, 4)}"
         scale.append(Control(LOAD, tr("load factor"), value, share, "× 1", pressed=factor == 1.0))
     own = (control_of(model, key, slider) for key, slider in enumerate(model.sliders))
-    return SliderStack((*scale, *(control for control in own if control is not None)), ABOVE)
+    controls = *scale, *(control for control in own if control is not None)
+    return SliderStack(controls, ABOVE, _choices(context) if model.solution is not None else ())
+
+
+def _choices(context: Context) -> tuple[Tool, ...]:
+    """What can be chosen to act in statics, then the envelope of combinations, and the boxes of their factors."""
+    model, enveloped = context.model, context.view.envelope
+    names = choices(model)
+    if not names:
+        return ()
+    chosen = None if enveloped else model.settings.combination
+    titles = [name if name in model.settings.combinations else begun(said(model, name)) for name in names]
+    tools = [Tool(SHOW, title, pressed=name == chosen) for name, title in zip(names, titles, strict=True)]
+    return (
+        *tools,
+        Tool("toggle envelope", begun(tr("envelope")), pressed=enveloped),
+        Tool("edit combinations", "…"),
+    )
 
 
 def scale_control(settings: Settings) -> Control:

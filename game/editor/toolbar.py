@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -22,37 +23,102 @@ from pinjoint.systems.input.actions import ACTIONS, FORCE_METHOD, FORMS, METHODS
 
 PLACE = "place"  # the tools of mods stand at the end of its group, their other buttons in a group of their own
 
-# The actions of the toolbar, in groups from the top to the bottom.
-TOOLBAR: tuple[tuple[str, ...], ...] = (
-    ("toggle run", "restart", "step back", "step", "slower", "faster", "settle"),
-    ("toggle statics", "next theory"),
-    ("part before", "next part", "to the equations", "release x", "release y", "release another"),
-    ("toggle diagrams of sets", "back"),
-    ("undo", "redo", "copy", "paste", "duplicate", "delete"),
-    (PLACE, "rod", "rigid", "hinge", "support", "force", "moment", "velocity"),
-    (
+MODS = marked("Mods")
+
+# The actions of the toolbar, in groups from the top to the bottom, by the names of these.
+TOOLBAR: dict[str, tuple[str, ...]] = {
+    marked("Run"): ("toggle run", "restart", "step back", "step", "slower", "faster", "settle"),
+    marked("Statics"): ("toggle statics", "next theory"),
+    marked("Steps"): (
+        *("part before", "next part", "to the equations", "release x", "release y", "release another"),
+    ),
+    marked("Method"): ("toggle diagrams of sets", "back"),
+    marked("Edit"): ("undo", "redo", "copy", "paste", "duplicate", "delete"),
+    marked("Draw"): (PLACE, "rod", "rigid", "hinge", "support", "force", "moment", "velocity"),
+    marked("Show"): (
         *("toggle diagrams", "toggle free bodies", "toggle theory", "toggle energy", "toggle table"),
         *("next shape", "fit", "new grid", "next grid"),
     ),
-    ("properties", "force method", "new", "load", "save again", "save"),
-    ("screenshot", "toggle full screen", "next theme", "toggle help"),
-)
+    marked("Model"): ("properties", "force method", "new", "load", "save again", "save"),
+    marked("Window"): ("screenshot", "toggle full screen", "next theme", "toggle help"),
+}
+WORDS = {  # beside icons, where there is room: of actions, or of the icons that they have while they are on
+    "toggle run": marked("run"),
+    "pause": marked("pause"),
+    "restart": marked("restart"),
+    "step back": marked("step back"),
+    "step": marked("step"),
+    "slower": marked("slower"),
+    "faster": marked("faster"),
+    "settle": marked("equilibrium"),
+    "toggle statics": marked("statics"),
+    "next theory": marked("exact"),
+    "part before": marked("previous"),
+    "next part": marked("next"),
+    "to the equations": marked("equations"),
+    "release x": marked("release x"),
+    "release y": marked("release y"),
+    "release another": marked("another"),
+    "toggle diagrams of sets": marked("diagrams"),
+    "back": marked("close"),
+    "undo": marked("undo"),
+    "redo": marked("redo"),
+    "copy": marked("copy"),
+    "paste": marked("paste"),
+    "duplicate": marked("duplicate"),
+    "delete": marked("delete"),
+    PLACE: marked("particle"),
+    "rod": marked("rod"),
+    "rigid": marked("frame rod"),
+    "hinge": marked("hinge"),
+    "support": marked("support"),
+    "force": marked("load"),
+    "moment": marked("moment"),
+    "velocity": marked("velocity"),
+    "toggle diagrams": marked("diagrams"),
+    "toggle free bodies": marked("free bodies"),
+    "toggle theory": marked("comparison"),
+    "toggle energy": marked("energies"),
+    "toggle table": marked("table"),
+    "next shape": marked("modes"),
+    "fit": marked("show all"),
+    "new grid": marked("new grid"),
+    "next grid": marked("next grid"),
+    "properties": marked("properties"),
+    "force method": marked("force method"),
+    "new": marked("new"),
+    "load": marked("open"),
+    "save again": marked("save"),
+    "save": marked("save as"),
+    "screenshot": marked("picture"),
+    "toggle full screen": marked("full screen"),
+    "next theme": marked("theme"),
+    "toggle help": marked("help"),
+    "walls.wall": marked("wall"),
+    "probes.plot": marked("plot"),
+    "collisions.speeds": marked("histogram"),
+}
 
 
 def toolbar_of(context: Context) -> Toolbar:
     """The buttons of the active scene; those whose keys would do nothing now are not enabled."""
-    groups = (
-        tuple(filter(None, (tool(context, name) for name in group))) for group in _actions_of_toolbar(context)
-    )
-    return Toolbar(tuple(group for group in groups if group))
+    offered = {
+        name: tuple(filter(None, (tool(context, action) for action in actions)))
+        for name, actions in _actions_of_toolbar(context).items()
+    }
+    groups = {name: tools for name, tools in offered.items() if tools}
+    return Toolbar(tuple(groups.values()), tuple(map(tr, groups)))
 
 
-def _actions_of_toolbar(context: Context) -> list[list[str]]:
-    """The names of its actions, in groups; those of other scenes among them. None in forms."""
+def _actions_of_toolbar(context: Context) -> dict[str, Sequence[str]]:
+    """The names of its actions, by the names of groups; those of other scenes among them. None in forms."""
     if context.scenes.active.tools in FORMS:
-        return []
-    groups = [[*group, *(of_mods(draw=True) if PLACE in group else ())] for group in TOOLBAR]
-    return [*groups[:-1], of_mods(draw=False), groups[-1]]  # the last group stands at the bottom
+        return {}
+    groups = {
+        name: [*group, *(of_mods(draw=True) if PLACE in group else ())] for name, group in TOOLBAR.items()
+    }
+    last = groups.popitem()  # which stands at the bottom
+    return {**groups, MODS: of_mods(draw=False), last[0]: last[1]}
 
 
 def of_mods(*, draw: bool) -> list[str]:
@@ -73,14 +139,14 @@ def tool(context: Context, name: str, title: str = "") -> Tool | None:
     pressed = name == tool_in_hand(context) or bool(action.pressed(context))
     icon, pressed_title = action.pressed_as(context) if pressed else ("", "")
     enabled = scene in binding.scenes and bool(action.enabled(context))
-    said = title or pressed_title or binding.title
-    return _tool(language(), name, said, binding.key, icon or name, pressed, enabled)
+    said, word = title or pressed_title or binding.title, WORDS.get(icon) or WORDS.get(name, "")
+    return _tool(language(), name, said, word, binding.key, icon or name, pressed, enabled)
 
 
 @lru_cache(maxsize=1024)  # a frame has some fifty
-def _tool(spoken: str, name: str, title: str, *facts: Any) -> Tool:
+def _tool(spoken: str, name: str, title: str, word: str, *facts: Any) -> Tool:
     """A button or an entry whose title is said in the present language."""
-    return Tool(name, tr(title), *facts)
+    return replace(Tool(name, tr(title), *facts), word=tr(word) if word else "")
 
 
 # --- menus -----------------------------------------------------------------------------------------------
@@ -96,7 +162,7 @@ def menu_at(context: Context, pixel: Vector) -> Menu:
     title = begun(heading(context.model, context.selected)) if context.model.any_tagged(Selected) else ""
     if context.scene in METHODS:
         picks = [("pick unknown", marked("release this"))] if context.scene == FORCE_METHOD else []
-        groups, title = [picks, *_actions_of_toolbar(context)], ""
+        groups, title = [picks, *_actions_of_toolbar(context).values()], ""
     entries = ([(entry, "") if isinstance(entry, str) else entry for entry in group] for group in groups)
     tools = (tuple(filter(None, (tool(context, *entry) for entry in group))) for group in entries)
     return Menu(title, tuple(group for group in tools if group), pixel, pointed=pixel)
@@ -193,6 +259,7 @@ def _of_canvas(context: Context) -> Groups:
     if context.view.strip.width == 0:
         known = {entry if isinstance(entry, str) else entry[0] for group in groups for entry in group}
         groups += [
-            [action for action in group if action not in known] for group in _actions_of_toolbar(context)
+            [action for action in group if action not in known]
+            for group in _actions_of_toolbar(context).values()
         ]
     return groups

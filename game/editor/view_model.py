@@ -33,7 +33,7 @@ from pinjoint.systems.forms.results import along, told
 from pinjoint.systems.input.actions import ACTIONS, LIVE
 from pinjoint.systems.render.ui.overlays import BAR
 
-COMPILING = marked("Compiling the program for this model, once: about {seconds:.0f} s left.")
+READYING = marked("Getting ready for this model, once: about {seconds:.0f} s left.")
 STILL = ("pause", "properties")  # scenes of the model in which time stands still
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_WATCHED = 2000  # particles, up to which it is told that they left the picture
@@ -220,13 +220,13 @@ def _awaited(context: Context) -> Waiting | None:
 
 
 def _told(waited: Waiting | None) -> str:
-    """The notice that a step program is compiled, "" if none is."""
+    """The notice that a run gets ready, "" if none does."""
     if waited is None:
         return ""
     left = waited.expected - waited.seconds
     if left > 1.0:
-        return tr(COMPILING, seconds=left)
-    return tr("Compiling the program for this model, once: nearly done.")
+        return tr(READYING, seconds=left)
+    return tr("Getting ready for this model, once: nearly done.")
 
 
 def _flashes(context: Context) -> NDArray[np.float64]:

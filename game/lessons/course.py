@@ -10,15 +10,17 @@ from pinjoint.components.field import FieldError
 from pinjoint.components.language import decimals, joined, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.settings import PAUSE, STATICS
+from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.toolbar import Tool
-from pinjoint.components.units import USUAL, show_in, units_on_screen
+from pinjoint.components.units import USUAL, number_and_unit, show_in, units_on_screen
 from pinjoint.components.view import Card, Shape, View
 from pinjoint.documents.document import document
 from pinjoint.documents.models import ModelError, load
 from pinjoint.documents.open_documents import ModelFile
+from pinjoint.editor.gestures.drawing import Drawing
 from pinjoint.editor.view_model import offer_tools
 from pinjoint.lessons import progress
-from pinjoint.lessons.judging import Answer, Document, Verdict, filled, judge, named, said_of
+from pinjoint.lessons.judging import Answer, Document, Verdict, filled, judge, named, question, said_of
 from pinjoint.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Lesson, Line, Task
 from pinjoint.scripts.lines import play_line
 from pinjoint.scripts.script import ScriptError
@@ -56,6 +58,7 @@ class Course:
         self._opened = ""  # the name of its model
         self._unit = ""
         self._seen: object = None
+        self._judged: tuple[str, ...] = ()  # what was selected then
         self._scored = ""
         self._shown = False  # the solution was
         self._done = progress.done(lesson.name)
@@ -114,7 +117,10 @@ class Course:
             except ModelError as error:
                 raise self.lesson.script.error(task.line, error) from None
         else:
+            session.model.settings.theory = self._begun.get("settings", {}).get("theory", FIRST_ORDER)
             session.scenes.begin(session)
+        session.leave_gesture()
+        session.view.tool = ""  # that was in hand
         self.perform(task.setup)
         session.document.shapes.hide()
         session.notice = ""
@@ -225,10 +231,13 @@ class Course:
         try:
             answer = self._given() if self.task.kind != UNTIL else None
         except FieldError as error:
-            self.mood, self.said = WRONG, tr("The answer {reason}.", reason=str(error))
+            if plain := not self._unit and number_and_unit(self.typed)[1]:
+                asked = tr("Type a number without a unit."), question(self._session, self.task.asked[0])
+            self.mood = WRONG
+            self.said = joined(asked) if plain else tr("The answer {reason}.", reason=str(error))
             return
         finally:
-            self.writes = False
+            self.writes, self._judged = False, self._selected()
         self._judge(answer)
 
     def _judge(self, answer: Answer, *, aloud: bool = True) -> None:
@@ -284,7 +293,8 @@ class Course:
         """Accept a state as soon as it is reached and nobody is in the middle of something, or say anew what is wrong."""
         session, task = self._session, self.task
         apart = task.after or session.settings.opens_in == STATICS
-        if session.gesture is not None or session.footer is not None or (session.busy and apart):
+        drags = session.gesture is not None and not isinstance(session.gesture, Drawing)
+        if drags or session.footer is not None or (session.busy and apart):
             return
         seen = self._looks()
         if seen == self._seen or (self.accepted and not task.score):
@@ -292,7 +302,7 @@ class Course:
         self._seen = seen
         if task.kind == UNTIL:
             self._judge(None, aloud=self.mood == WRONG)
-        elif task.kind == SELECT and self.mood == WRONG:
+        elif task.kind == SELECT and self.mood == WRONG and self._selected() != self._judged:
             self.mood = self.said = ""
 
     def _looks(self) -> object:

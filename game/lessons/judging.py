@@ -53,6 +53,7 @@ _NAMES = {
     "statics.degree": marked("The degree of static indeterminacy"),
     "statics.frequency": marked("The lowest natural frequency (Hz)"),
     "statics.buckling": marked("The lowest buckling load factor"),
+    "statics.width": marked("The width of the structure (m)"),
     "count.particles": marked("The number of particles"),
     "count.rods": marked("The number of rods"),
     "count.loads": marked("The number of loads"),
@@ -157,8 +158,7 @@ def _wrong_number(truth: Session, task: Task, answer: float) -> str:
     if answer * wanted < 0.0:
         return tr("Neither the sign nor the size is right yet.")
     said = tr(_SIZES[wanted < 0.0 and answer < 0.0, abs(answer) > abs(wanted)], answer=given)
-    unit, _, name = said_of(truth, task.asked[0])
-    return joined([said, tr("Asked: {what}.", what=f"{name} ({unit})" if unit else name)])
+    return joined([said, question(truth, task.asked[0])])
 
 
 _SIZES = {  # by whether the answer is rightly negative, and larger in size than the truth
@@ -247,6 +247,12 @@ def said_of(session: Session, path: str) -> tuple[str, float, str]:
     except PathError:
         return "", 1.0, tr(_NAMES[path]) if path in _NAMES else path
     return found.unit, found.factor, tr(_NAMES[path]) if path in _NAMES else begun(found.name)
+
+
+def question(session: Session, path: str) -> str:
+    """What the number at a path is, and its unit."""
+    unit, _, name = said_of(session, path)
+    return tr("Asked: {what}.", what=f"{name} ({unit})" if unit else name)
 
 
 def _shown_number(session: Session, path: str) -> float:

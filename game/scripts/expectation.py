@@ -8,6 +8,8 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from pinjoint.components.field import ENDS
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import english, listed, marked
@@ -157,6 +159,15 @@ def _buckling(session: Any) -> float:
     return float(found.factors[0]) if len(found.factors) and not found.coarse else math.nan
 
 
+def _width(session: Any) -> float:
+    """How far the joints reach across the direction in which they reach farthest (m): 0 where they lie on one line."""
+    points = session.model.particles.position
+    if not len(points):
+        return 0.0
+    across = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2][-1]
+    return float(np.ptp(points @ across)) if len(points) > 1 else 0.0
+
+
 def _in_equilibrium(session: Any) -> bool:
     """Whether what is shown is: the solution of statics, or the state."""
     document = session.document
@@ -170,6 +181,7 @@ _STATICS: dict[str, Callable[[Any], Any]] = {
     "degree": lambda session: session.document.assessment.indeterminacy.static,
     "mechanisms": lambda session: session.document.assessment.indeterminacy.mechanisms,
     "equilibrium": _in_equilibrium,
+    "width": _width,
     "frequency": _frequency,
     "buckling": _buckling,
 }

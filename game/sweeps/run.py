@@ -13,6 +13,7 @@ import msgspec
 
 from pinjoint.commands.analysis import Analysis
 from pinjoint.components.language import tr
+from pinjoint.mods import load_all
 from pinjoint.sweeps.execution import compute_all
 from pinjoint.sweeps.plan import FAILED, Outcome, Plan, plan_of
 from pinjoint.sweeps.results import Results, check_output
@@ -36,6 +37,7 @@ def sweep(
     output: str | Path | None = None,
     workers: int | None = 1,
     scheduler: str | None = None,
+    mods: Iterable[str | Path] = (),
     progress: Progress = lambda done, total, failed: None,
 ) -> Results:
     """Compute all variants of a model and keep what is measured of each.
@@ -47,11 +49,13 @@ def sweep(
     output: a .csv or .parquet file; while it is not complete, a file beside it keeps what is finished, and
     the same sweep goes on from there. workers: processes; 1 is this one, None as many as suit (a script that
     asks for more than 1 guards its main code by `if __name__ == "__main__"`). scheduler: the address of that of
-    a running Dask cluster, which computes instead. progress: told how many are done, of how many, and failed.
+    a running Dask cluster, which computes instead. mods: folders of mods, or names of bundled ones, to load first.
+    progress: told how many are done, of how many, and failed.
 
     Same arguments, same bits, however many workers. Raises SweepError, ModelError,
-    PathError, and OSError if the output cannot be written.
+    PathError, ModError, and OSError if the output cannot be written.
     """
+    load_all(mods)
     plan = plan_of(source, vary, measure, analysis, overrides, samples, seed)
     if workers is not None and workers < 1:
         raise SweepError("--workers {workers}: use at least 1.", workers=workers)

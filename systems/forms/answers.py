@@ -7,15 +7,21 @@ from collections.abc import Sequence
 from decimal import DecimalException
 from typing import Any
 
+from pinjoint.components.cases import PERMANENT, Combinations, alone, cases, check_case
 from pinjoint.components.field import Field, FieldError
 from pinjoint.components.form import Box, Form
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import tr
-from pinjoint.components.load import HISTORIES
+from pinjoint.components.language import marked, tr
+from pinjoint.components.load import CONSTANT, HISTORIES, Load, SpanLoad
 from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.settings import Settings
 from pinjoint.components.units import inside
-from pinjoint.systems.forms.properties import KIND
+from pinjoint.systems.forms.properties import CASE, KIND, NAMED, REMOVE, cases_named
 from pinjoint.systems.forms.typing import YES_NO
+
+_OF_LOADS = Load.force.name, Load.moment.name
 
 
 def problem(model: Model, box: Box) -> str:
@@ -89,8 +95,43 @@ def apply(form: Form, model: Model, *, typing: bool = False) -> list[str]:
     return refused
 
 
+def draw_load(model: Model, elements: Sequence[Handle], field: str, value: Any) -> None:
+    """Give elements a vector or a moment: as their own, or where one case acts alone, of a load in that."""
+    case = alone(model) or PERMANENT
+    if case == PERMANENT or field not in (*_OF_LOADS, Rod.distributed_force.name):
+        model.assign(elements, field, [value] * len(elements))
+        return
+    with model.transaction(marked("load of a case")):
+        for element in elements:
+            if field in _OF_LOADS:
+                known = (load for load in model.loads if load.particle is element and load.case == case)
+                own = next((load for load in known if load.history == CONSTANT), None)
+                model.assign([own or model.create(Load, on=[element.row], case=[case])[0]], field, [value])
+            else:
+                _all_along(model, element, value, case)
+
+
+def _all_along(model: Model, rod: Handle, force: Any, case: str) -> None:
+    model.create(SpanLoad, rod=[rod.row], case=[case], start_intensity=[force], end_intensity=[force])
+
+
+def to_case(model: Model, elements: Sequence[Handle], case: str) -> None:
+    """Make what acts on particles and rods, as their own, loads of a case."""
+    for element in elements:
+        if isinstance(element, Particle):
+            own: dict[str, Any] = {"force": [element.force], "moment": [element.moment]}
+            model.create(Load, on=[element.row], case=[case], **own)
+            element.force, element.moment = (0.0, 0.0), 0.0
+        elif isinstance(element, Rod):
+            _all_along(model, element, element.distributed_force, case)
+            element.distributed_force = 0.0, 0.0
+
+
 def _assign(model: Model, box: Box, elements: Sequence[Handle]) -> None:
     field, part = _target(model, box)
+    if part == CASE:
+        to_case(model, elements, check_case(box.text, box.section))
+        return
     value = _value(field, part, box.text)
     values: Any = [_with_part(elements[0], field, part, value)] * len(elements)
     if field.shape:
@@ -105,13 +146,30 @@ def _with_part(element: Handle, field: Field[Any], part: str, value: Any) -> Any
     if field.dtype is not object:
         return value
     old = getattr(element, field.name)
+    if field is Settings.combinations:
+        return _with_combination(element.world, old, part, value)
     if part != KIND:
         return {**old, part: value}
     return {KIND: value} | {name: old[name] for name in HISTORIES[value].parameters if name in old}
 
 
+def _with_combination(world: Any, old: Combinations, part: str, value: Any) -> Combinations:
+    """Combinations of which one has another name or another factor, or is new, or is gone. Raises FieldError."""
+    row, _, what = part.partition(".")
+    rows, at = list(old.items()), int(row)
+    name, factors = rows[at] if at < len(rows) else ("", dict.fromkeys(cases(world), 1.0))
+    if what != NAMED:
+        factors = {**factors, cases_named(world)[int(what)]: value}
+    elif value != name and value.strip() in old:
+        raise FieldError("there is a combination '{name}' already", name=value)
+    else:
+        name = value
+    rows[at : at + 1] = [] if name == REMOVE else [(name, factors)]
+    return dict(rows)
+
+
 def _target(model: Model, box: Box) -> tuple[Field[Any], str]:
-    table, name, *part = box.target.split(".")
+    table, name, *part = box.target.split(".", 2)
     return model.tables[table].fields[name], "".join(part)
 
 
@@ -124,7 +182,7 @@ def _value(field: Field[Any], part: str, text: str) -> Any:
         return text == YES_NO[1]
     if field.nullable and text == field.absent:
         return None
-    if field.dtype is str or part == KIND:
+    if field.dtype is str or part in (KIND, CASE) or part.endswith(f".{NAMED}"):
         return text
     number = inside(text, field.unit, field.on_screen[0])
     return int(number) if field.dtype is int and number == number.to_integral_value() else float(number)

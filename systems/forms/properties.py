@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.cases import PERMANENT, cases
 from pinjoint.components.field import SAVED, Field
 from pinjoint.components.form import NAME, NUMBER, TEXT, WORD, Box, Form
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, plural, tr
-from pinjoint.components.load import HISTORIES, Load
+from pinjoint.components.load import HISTORIES, Load, SpanLoad
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle, supported
 from pinjoint.components.rod import Rod, rigid_joints
@@ -24,17 +25,25 @@ from pinjoint.systems.forms.typing import YES_NO, Typing
 
 MIXED = marked("mixed")
 KIND = "kind"  # the part of a history that is its kind
+CASE = "case"  # the part of an own load that makes it one of a case
+NAMED = "name"  # the part of a combination that is its name
+REMOVE = marked("remove it")  # what takes a combination away, in place of its name
+COMBINATION = marked("new combination")
+_MOST_ACROSS = 4  # boxes of a combination
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
-_DECIDED = (Particle.asleep, Rod.yielded_at)  # by the run
+_DECIDED = (Particle.asleep, Rod.yielded_at, Settings.combination)  # by the run, or by buttons
+_OWN_LOADS = (Particle.force, Rod.distributed_force)
 # The groups of boxes by heading, in the order in which they follow one another, with the Fields of all kinds in each, those
 # that matter first. What is in none, such as a Field of a mod, stands in the first, under the name of its element.
 GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
     "": (
         *(Particle.name, Particle.position, Rod.name, Rod.prescribed_rest_length, Load.name, Load.force),
-        *(Load.moment, Load.history, Environment.acceleration, Environment.force, Environment.drag),
+        *(Load.moment, Load.case, Load.history),
+        *(Environment.acceleration, Environment.force, Environment.drag),
         *(Settings.collisions, Settings.restitution, Settings.prescribed_displacement_scale),
         *(Settings.integrator, Settings.time_step, Settings.tolerance),
     ),
+    marked("Load combinations"): (Settings.combinations,),
     marked("Section and material"): (
         *(Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment),
         *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.density, Rod.thermal_expansion),
@@ -121,7 +130,7 @@ def _subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
     found = [subject for section, group in named for subject in _groups(model, section, group)]
     of = {tr("All particles"): Particle, tr("All rods"): Rod}
     settings = _groups(model, tr("All particles"), [model.settings])
-    return found + [subject for subject in settings if not selected or of[subject.section] in kinds]
+    return found + [subject for subject in settings if not selected or of.get(subject.section) in kinds]
 
 
 def _groups(model: Model, section: str, elements: Sequence[Handle]) -> Iterator[Subject]:
@@ -132,11 +141,10 @@ def _groups(model: Model, section: str, elements: Sequence[Handle]) -> Iterator[
     wanted = [
         field
         for field in fields
-        if (field.dtype in _EDITABLE or field is Load.history)
+        if (field.dtype in _EDITABLE or field in (Load.history, Settings.combinations))
         and (turn or field not in _OF_BENDING)
         and (len(elements) == 1 or field.name != "name")
         and field not in _DECIDED
-        and (field is not Settings.combination or model.settings.combinations)
     ]
     rest = [field for field in wanted if not any(field in group for group in GROUPS.values())]
     for title, group in GROUPS.items():
@@ -183,13 +191,39 @@ def refresh(form: Form, model: Model, selected: Sequence[Handle]) -> None:
 def _boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[Box]:
     """The boxes for one Field of the elements."""
     if field.dtype is object:
-        yield from _history_boxes(model, subject, field)
+        yield from (_history_boxes if field is Load.history else _combination_boxes)(model, subject, field)
         return
-    words = _words(field)
+    words = tuple(cases(model)) if field in (Load.case, SpanLoad.case) else _words(field)
     for axis in field.axes if field.shape else ("",):
         content = _content(model, subject, field, axis)
         accepts = NUMBER if field.dtype in _NUMBERS else TEXT if not words else NAME if field.checker else WORD
         yield _box(subject, field, axis, content, accepts, words)
+    if field in _OWN_LOADS and model.tables[subject.elements[0].table].column(field.name)[subject.rows].any():
+        box = _box(subject, field, CASE, (PERMANENT, ""), NAME, tuple(cases(model)))
+        yield replace(box, title=Load.case.title, unit="", explanation=Load.case.doc)
+
+
+def cases_named(model: Model) -> list[str]:
+    """The cases of loads, and others that combinations name."""
+    combinations = model.settings.combinations
+    return list(
+        dict.fromkeys([*cases(model), *(case for factors in combinations.values() for case in factors)])
+    )
+
+
+def _combination_boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[Box]:
+    """The name of each combination, and its factors in a row below; then the name of a new one."""
+    known, combinations = cases_named(model), model.settings.combinations
+    across = min(len(known), _MOST_ACROSS)
+    for row, (name, factors) in enumerate(combinations.items()):
+        box = _box(subject, field, f"{row}.{NAMED}", (name, ""), NAME, (REMOVE,))
+        yield replace(box, title=marked("combination"), across=2)
+        for number, case in enumerate(known):
+            text = _written_number(factors.get(case, 0.0), 1.0)
+            yield replace(
+                _box(subject, field, f"{row}.{number}", (text, ""), NUMBER), title=case, across=across
+            )
+    yield replace(_box(subject, field, f"{len(combinations)}.{NAMED}", ("", ""), TEXT), title=COMBINATION)
 
 
 def _history_boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[Box]:

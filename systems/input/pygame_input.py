@@ -75,9 +75,10 @@ class PygameInput(System):
     def process(self, frame: Any) -> None:
         """Collect the events since the last frame; sleep a little if nothing can happen without one."""
         session, events = frame.session, pygame.event.get()
-        waiting = session.readiness.awaited is not None
+        readiness = session.readiness
+        waiting = readiness.awaited is not None
         if not events and session.footer is None and (waiting or not session.busy):
-            events = _awaited(WAITING_LOOKS if waiting else IDLE_LOOKS)
+            events = _awaited(WAITING_LOOKS if waiting or readiness.finding else IDLE_LOOKS)
         for event in events:
             self._handle(event, frame)
         dropped = [event.file for event in events if event.type == pygame.DROPFILE]

@@ -86,21 +86,25 @@ def runge_kutta_constants(tableau: Tableau, proportional: float = 0.0, lengthen:
 
     proportional: how much the next step follows the change of the error (0: not at all).
     """
-    return tableau.constants | {
-        "SHORTEN": 0.2,  # least and
-        "LENGTHEN": lengthen,  # most that a step is multiplied by to get the next
-        "LEAST_ERROR": 1e-4,  # smaller ones say nothing about the next
-        "BEYOND": 1e300,  # the error of a step that has no result
-        "PROPORTIONAL": proportional,
-        "ROUND_OFF_X": 1e-15,  # of the largest displacement: errors below it are not chased
-        "ROUND_OFF_V": 1e-13,  # the same per longest step, for velocities
-        "LEAST_TURN": 1e-3,  # share of what displacements amount to, below which no error of rotations counts
-        "FIXED_TOLERANCE": 1e-10,  # of implicit stages where nothing else says how exact they must be
-        "SMALLEST_SHARE": 1e-12,  # of the step to try, below which the run is given up
-        "EVENT_FLOOR": 1e-11,  # share of a strength within which an event is located
-        "EVENT_WIDTH": 1e-10,  # share of a step within which it is
-        "SLACK": 0.0,
-    }
+    return (
+        tableau.constants
+        | {
+            "SHORTEN": 0.2,  # least and
+            "LENGTHEN": lengthen,  # most that a step is multiplied by to get the next
+            "LEAST_ERROR": 1e-4,  # smaller ones say nothing about the next
+            "BEYOND": 1e300,  # the error of a step that has no result
+            "PROPORTIONAL": proportional,
+            "ROUND_OFF_X": 1e-15,  # of the largest displacement: errors below it are not chased
+            "ROUND_OFF_V": 1e-13,  # the same per longest step, for velocities
+            "LEAST_TURN": 1e-3,  # share of what displacements amount to, below which no error of rotations counts
+            "FIXED_TOLERANCE": 1e-10,  # of implicit stages where nothing else says how exact they must be
+            "SMALLEST_SHARE": 1e-12,  # of the step to try, below which the run is given up
+            "EVENT_FLOOR": 1e-11,  # share of a strength within which an event is located
+            "EVENT_WIDTH": 1e-10,  # share of a step within which it is
+            "EVENT_PATIENCE": 3.0,  # how often one end of the interval it lies in moves before the interval is halved
+            "SLACK": 0.0,
+        }
+    )
 
 
 class RungeKutta4(Integrator):

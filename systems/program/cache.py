@@ -78,7 +78,7 @@ def _folder_problem(path: Path) -> str:
 def _refuse(path: Path, problem: str) -> None:
     tell(
         tr(
-            "Compiled programs in {path} are not used, since they would be run and {problem}; delete it, or let nobody"
+            "What was got ready in {path} is not used, since it would be run and {problem}; delete it, or let nobody"
             " but yourself write there.",
             path=path,
             problem=problem,
@@ -116,7 +116,7 @@ def read(name: str) -> bytes | None:
 def drop(name: str, problem: Exception) -> None:
     """Delete what is whole and can still not be used, which is said once for each kind of problem."""
     kind = f"{type(problem).__name__}: {problem}"
-    tell(tr("What was compiled before cannot be loaded, and is compiled anew: {problem}.", problem=kind))
+    tell(tr("What was got ready before cannot be used, and is made anew: {problem}.", problem=kind))
     _delete(folder() / name)
 
 
@@ -154,7 +154,7 @@ def write(name: str, content: bytes) -> None:
 def _say(where: Path, error: OSError) -> None:
     if not TROUBLE:
         said = tr(
-            "Compiled programs cannot be kept in {folder}: {error}. Everything works, but starts more slowly next time."
+            "What was got ready cannot be kept in {folder}: {error}. Everything works, but starts more slowly next time."
             " Make room in that folder, or allow writing to it.",
             folder=where,
             error=error.strerror,

@@ -217,7 +217,7 @@ class GeneratedModule:
             self._patience = math.inf
             cache.tell(
                 tr(
-                    "{program} cannot be compiled, so it runs interpreted, which is slower ({error}).",
+                    "{program} cannot be got ready, so it runs in its slow form ({error}).",
                     program=begun(tr(self.name)),
                     error=str(error),
                 )

@@ -84,7 +84,7 @@ class Search(IntEnum):
     FAR = 1  # s; 0: no event was seen yet
     NEAR_MARGIN = 2
     FAR_MARGIN = 3
-    MOVED = 4  # which was moved last: 1 NEAR, -1 FAR, 0 none
+    MOVED = 4  # how often NEAR was moved last, FAR if negative
     ENDED = 5  # 1 once the event is at the end of the step, or there is none
     LENGTH = 6  # s; of the step that is searched
     LARGEST_DISPLACEMENT = 7  # as in Control, if the step is accepted

@@ -405,8 +405,13 @@ _Defined = ast.FunctionDef | ast.Lambda
 _parsed: dict[str, dict[int, list[_Defined]]] = {}  # by file, what of it is not rewritten yet
 
 
-def _definitions(file: str) -> dict[int, list[_Defined]]:
-    """All functions in a file, by the line on which they, or their decorators, begin."""
+def _at_top(module: ast.Module) -> Iterable[ast.AST]:
+    """The statements of a module, among which most kernels are; looking through all of it takes ten times as long."""
+    return module.body
+
+
+def _definitions(file: str, nodes: Callable[[ast.Module], Iterable[ast.AST]]) -> dict[int, list[_Defined]]:
+    """The functions among nodes of a file, by the line on which they, or their decorators, begin."""
     linecache.checkcache(file)
     lines = linecache.getlines(file)
     if not lines:
@@ -416,7 +421,7 @@ def _definitions(file: str) -> dict[int, list[_Defined]]:
         parsed = ast.parse("".join(lines))
     except SyntaxError as error:  # it is another text, such as a page with the function in it
         raise NoPlainForm(f"{file} is no source: {error}") from error
-    for node in ast.walk(parsed):
+    for node in nodes(parsed):
         if isinstance(node, _Defined):
             decorators = node.decorator_list if isinstance(node, ast.FunctionDef) else []
             found.setdefault(min(n.lineno for n in (node, *decorators)), []).append(node)
@@ -425,18 +430,18 @@ def _definitions(file: str) -> dict[int, list[_Defined]]:
 
 def _definition(plain: Any) -> ast.FunctionDef:
     """The definition of a function, to be changed: one that was changed before is read again."""
-    code = plain.__code__
-    for known in (_parsed.get(code.co_filename), None):
-        if known is None:
-            known = _parsed[code.co_filename] = _definitions(code.co_filename)
-        there = known.get(code.co_firstlineno, [])
+    code, file = plain.__code__, plain.__code__.co_filename
+    for nodes in (None, _at_top, ast.walk):
+        if nodes is not None:
+            _parsed[file] = _definitions(file, nodes)
+        there = _parsed.get(file, {}).get(code.co_firstlineno, [])
         for node in [node for node in there if _compiles_to(code, node)][:1]:
             there.remove(node)
             if isinstance(node, ast.FunctionDef):
                 return node
             body: list[ast.stmt] = [ast.Return(node.body)]
             return ast.copy_location(ast.FunctionDef("lambda__", node.args, body, []), node)
-    raise NoPlainForm(f"there is no source of {plain.__qualname__} in {code.co_filename}")
+    raise NoPlainForm(f"there is no source of {plain.__qualname__} in {file}")
 
 
 def _compiles_to(code: CodeType, node: _Defined) -> bool:

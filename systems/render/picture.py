@@ -174,7 +174,7 @@ def _composed(sheet: Sheet) -> Picture:
         sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
     paper = Paper(sheet.unit, sheet.view.pointer, overlays)
-    for place in sheet.view.slider_places:
+    for place in (*sheet.view.slider_places, *[sheet.view.choices_place] * bool(sheet.view.sliders.choices)):
         sheet.occupancy.block(*place.box)
     put_readouts(paper, sheet, room)
     put_notice(paper, sheet, room)

@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 69_031,
-    "files": 380,
-    "names": 3_814,  # functions, classes and constants of modules
-    "public names": 2_260,
-    "numbers": 1_489,  # other than 0, 1 and 2, in constants and defaults
+    "lines": 70_563,
+    "files": 382,
+    "names": 3_896,  # functions, classes and constants of modules
+    "public names": 2_308,
+    "numbers": 1_504,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 56_162,
+    "lines of tests": 56_887,
 }
 
 

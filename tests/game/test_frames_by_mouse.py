@@ -273,3 +273,19 @@ def test_in_an_empty_model_ctrl_r_always_leads_to_rods_that_bend() -> None:
         session.press("ctrl+r")
         assert session.view.rigid
         session.press("escape")
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_a_loaded_frame_is_drawn_in_statics_however_it_is_held_and_with_no_load_factor() -> None:
+    session = portal()
+    session.rods["BC"].distributed_force = (0.0, -20.0)
+    session.press("q")
+    for _ in range(8):
+        session.press("c", session.point(0, 0))
+        for _ in range(8):
+            session.press("c", session.point(4, 0))
+            session.update_view()
+            compose(session.model, session.view, load_theme("light"))
+    session.model.settings.load_steps = (0.0,)
+    session.update_view()
+    compose(session.model, session.view, load_theme("light"))

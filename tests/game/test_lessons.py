@@ -480,6 +480,68 @@ def test_the_lightest_bridge_keeps_its_best_score(session: Session) -> None:
     assert "100 kN are allowed" in course.said
 
 
+def test_what_is_said_of_a_selection_stays_until_another_one_is_made(session: Session) -> None:
+    begun(session, "02_tension_or_compression", 2)
+    for pick, said in (((0.5, 0.5), "Rod AB does not belong"), ((0.0, 0.5), "Nothing is selected")):
+        session.click(*pick)
+        session.update_view()
+        push(session, "check answer")
+        for _ in range(3):
+            session.view.pointer = session.point(1.0, 0.8)
+            session.update_view()
+            assert said in session.course.said
+    session.click(1.5, 0.5)
+    session.update_view()
+    assert session.course.said == ""
+
+
+def test_a_structure_begins_with_a_triangle_and_a_load_that_points_down(session: Session) -> None:
+    course = begun(session, "01_first_structure")
+    for point in ((0, 0), (1, 1), (2, 2)):
+        session.press("p", session.point(*point))
+    session.update_view()
+    session.press("f5")
+    assert "on one line" in course.said
+    session.particles[1].position = (1.0, 0.0)
+    session.update_view()
+    assert course.accepted
+    course.begin(3)
+    session.press("f", session.point(1, 1))
+    session.click(1, 2)
+    session.update_view()
+    session.press("f5")
+    assert "points up" in course.said
+
+
+def test_a_task_gives_back_the_tool_and_the_theory(session: Session) -> None:
+    course = begun(session, "05_stiffness", 1)
+    session.press("z")
+    session.press("c", session.point(1.5, 2.0))
+    assert (session.model.first_order, session.view.tool) == (False, "support")
+    session.type("-2.93")
+    session.press("f5")
+    session.press("f10")
+    assert (course.at, session.model.first_order, session.view.tool, session.gesture) == (1, True, "", None)
+
+
+def test_a_number_without_a_unit_is_asked_for_as_such(session: Session) -> None:
+    course = begun(session, "14_buckling", 1)
+    session.type("61.7 kN")
+    session.press("return")
+    assert course.said == "Type a number without a unit. Asked: The lowest buckling load factor."
+
+
+def test_what_was_typed_counts_while_the_tool_goes_on(session: Session) -> None:
+    course = begun(session, "18_draw_by_typing", 1)
+    session.act("rod")
+    for text in ("0; 0", "4 m; 0"):
+        session.type(text)
+        session.press("return")
+    session.update_view()
+    assert session.gesture is not None
+    assert course.accepted
+
+
 # --- progress, and the person's own work -----------------------------------------------------------------
 
 

@@ -20,7 +20,7 @@ from pinjoint.components.language import spoken
 from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.documents.document import document
-from pinjoint.editor.view_model import COMPILING
+from pinjoint.editor.view_model import READYING
 from pinjoint.elsewhere import UNITS, Job, parts_of, problem_of
 from pinjoint.preparation import Preparation, _job, _jobs_of, is_live
 from pinjoint.session import Session
@@ -157,7 +157,7 @@ def test_stepping_and_the_force_method_begin_at_once_too(app: App, action: str) 
     frames(app, 2)
     moved = session.model if action == "." else session.scenes.active.guide.moving[0].model  # type: ignore[attr-defined]
     assert moved.clock.steps > 0
-    assert COMPILING.partition(":")[0] not in session.view.status.notice
+    assert READYING.partition(":")[0] not in session.view.status.notice
 
 
 def test_a_hand_that_drags_in_pause_chooses_no_integrator(
@@ -265,7 +265,7 @@ def test_a_large_model_waits_and_shows_how_much_is_done(large: App, compiler: Co
     frames(large, 3)
     assert session.model.clock.steps == 0
     status = session.view.status
-    assert (status.state, status.notice.startswith(COMPILING.partition(":")[0])) == ("preparing", True)
+    assert (status.state, status.notice.startswith(READYING.partition(":")[0])) == ("preparing", True)
     assert status.share is not None
     assert 0.0 <= status.share < 1.0
     assert not session.view.forces_known
@@ -333,10 +333,10 @@ def test_calls_that_would_take_long_interpreted_wait(
 @pytest.mark.parametrize(
     ("said", "status", "told"),
     [
-        ("", -9, "the process that compiles ended with status -9"),
+        ("", -9, "the process that gets it ready ended with status -9"),
         ("numba cannot be imported (No module)\n", 0, "numba cannot be imported (No module)."),
         ("Compiled programs cannot be kept\n", 0, "Compiled programs cannot be kept."),
-        ("\n", 0, "what was compiled was not kept"),
+        ("\n", 0, "what was got ready was not kept"),
     ],
 )
 def test_a_fault_of_the_compiler_costs_no_run_and_is_said_once(

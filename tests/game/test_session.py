@@ -6,11 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import esper
 import numpy as np
 import pytest
 
 from pinjoint import Session
-from pinjoint.components import FieldError
+from pinjoint.components import FieldError, Rod
 from tests.properties.limits import interrupted_after
 from tests.reference.models import model, particle
 
@@ -229,3 +230,15 @@ def test_more_steps_than_can_be_counted_are_begun() -> None:
     session = Session.open(model(discs, [], settings={"time_step": 1e-30}))
     with interrupted_after(3.0), pytest.raises(KeyboardInterrupt):
         session.run(time=1e301)
+
+
+def test_opening_a_model_leaves_the_current_world_of_esper_as_it_was() -> None:
+    esper.switch_world("a script's own")
+    try:
+        model = Session.open("isostatic").model
+        assert esper.current_world == "a script's own"
+        model.activate()
+        assert len(esper.get_component(Rod)) == model.rods.count
+    finally:
+        esper.switch_world("default")
+        esper.delete_world("a script's own")

@@ -10,7 +10,7 @@ from pinjoint.documents.autosave import Autosave, unkept
 from pinjoint.documents.library import data_folder, models_folder
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.scenes.load import Load
-from pinjoint.editor.view_model import COMPILING
+from pinjoint.editor.view_model import READYING
 from tests.golden.scenes import EMPTY, Scene, Window, opened, pressed, shown
 from tests.reference.models import model, particle, rod
 
@@ -281,7 +281,7 @@ STATES: dict[str, Scene] = {
     "unkept": _noticed(
         unkept(Path("/home/somebody/.local/share/pinjoint"), OSError(28, "No space left on device"))
     ),
-    "compiling": _noticed(COMPILING.format(seconds=12.0)),
+    "compiling": _noticed(READYING.format(seconds=12.0)),
     "settled": lambda window: pressed(window, "e", source="hyperstatic_yield"),
     "snapped": lambda window: pressed(window, "e", source="snap_through"),
     "all-panels": _panels("hyperstatic_yield", "m", "j", "i", "o", select="CD"),

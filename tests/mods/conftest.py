@@ -37,6 +37,12 @@ def unloaded(data: Path, config: Path) -> Iterator[None]:
 
 
 @pytest.fixture
+def in_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sessions say that a mod fails, and go on without it, as in a window."""
+    monkeypatch.setattr("pinjoint.session.check_mods", lambda known: None)
+
+
+@pytest.fixture
 def write_mod(tmp_path: Path, unloaded: None) -> Write:
     """Write a mod into the folder tmp_path/mods/NAME; `manifest` adds lines, `code` is its __init__.py."""
 

@@ -315,3 +315,25 @@ def test_aliases_of_types_are_what_they_mean() -> None:
     check(np.ones(2), column[np.float64], "places")
     with pytest.raises(TypeError, match="places is"):
         check(["a"], several, "places")
+
+
+def test_scripts_hear_of_a_mod_that_fails(write_mod: Write) -> None:
+    session = opened(write_mod, 'app.action("apple.a", key="ctrl+shift+j")(lambda session, pixel: 1 / 0)')
+    with pytest.raises(mods.ModError, match=r"action 'apple\.a' failed: ZeroDivisionError"):
+        session.press("ctrl+shift+j")
+    session.press("ctrl+shift+j")
+    assert "is switched off" in session.notice
+
+
+def test_scripts_hear_of_a_system_that_fails_in_a_frame(write_mod: Write) -> None:
+    head = """
+from pinjoint.systems.base import Phase, System
+class Ends(System):
+    name, phase = "apple.ends", Phase.EVENTS
+    def process(self, frame):
+        frame.session.particles["Z"]
+"""
+    session = opened(write_mod, "app.system(Ends)", head)
+    with pytest.raises(mods.ModError, match=r"system 'apple\.ends' failed: KeyError"):
+        session.frame(0.01)
+    session.frame(0.01)

@@ -296,6 +296,7 @@ class Trap:
 """
 
 
+@pytest.mark.usefixtures("in_window")
 def test_code_of_a_mod_that_no_guard_surrounds_is_named_all_the_same(write_mod: Write) -> None:
     session = Session.open(TRUSS, mods=[write_mod("apple", KIND)])
     session.press("ctrl+shift+j")

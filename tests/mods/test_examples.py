@@ -195,6 +195,14 @@ def test_the_message_of_a_mods_scene_is_seen_and_clicks_are_its_own(write_mod: W
     assert "Aim" in texts
 
 
+def test_sweeps_load_the_mods_that_they_are_given(unloaded: None) -> None:
+    sail = {"wind.Sail": {"area": 1.0}}
+    ball = model([particle("A", 0, 0, components=sail)], [], settings=VERLET)
+    vary, measure = {"environment.wind_velocity.x": [0.0, 10.0]}, "particles.A.displacement"
+    found = sweep(ball, vary, [measure], Analysis(times=(0.05,)), mods=["wind"])
+    assert found[f"{measure}.x"][0] == 0.0 < found[f"{measure}.x"][1]
+
+
 def test_sweeps_know_of_forces_between_pairs(unloaded: None) -> None:
     mods.load([FOLDER / "magnets"])
     poles, measure = [0.5, 1.0], "particles.A.velocity"

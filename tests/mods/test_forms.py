@@ -125,7 +125,7 @@ def test_where_the_compiler_is_damaged_a_law_is_interpreted_and_that_is_told(
     monkeypatch.setattr(cache, "SAID", told := [])
     assert session.run(steps=5) == "time reached"
     assert is_interpreted(session)
-    assert "cannot be compiled, so it runs interpreted, which is slower" in told[0]
+    assert "cannot be got ready, so it runs in its slow form" in told[0]
 
 
 FAULTS = [

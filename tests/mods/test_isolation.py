@@ -11,6 +11,8 @@ from pinjoint.mods import guard
 from tests.mods.conftest import Write
 from tests.reference.models import model, particle, rod
 
+pytestmark = pytest.mark.usefixtures("in_window")
+
 TRUSS: dict[str, Any] = model(
     [
         particle("A", 0.0, 0.0, fixed=[True, True]),

@@ -7,6 +7,7 @@ from functools import partial
 from operator import attrgetter
 
 from pinjoint.components.bent import AXIAL, is_frame
+from pinjoint.components.cases import acting, choices
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, marked, tr
@@ -22,7 +23,15 @@ from pinjoint.editor.context import Context
 from pinjoint.editor.readouts import pinned
 from pinjoint.editor.sliders import add_slider
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.input.actions import DISPLACEMENT_METHOD, FORCE_METHOD, SIMULATION, TABLE, actions_of
+from pinjoint.systems.forms.properties import COMBINATION
+from pinjoint.systems.input.actions import (
+    ACTIONS,
+    DISPLACEMENT_METHOD,
+    FORCE_METHOD,
+    SIMULATION,
+    TABLE,
+    actions_of,
+)
 from pinjoint.systems.render.model.diagrams import NAMES
 
 action = actions_of("Results", while_drawing=True)
@@ -220,6 +229,43 @@ def _usual(model: Model, elements: Sequence[Handle]) -> tuple[Sequence[Handle], 
     field = "distributed_force" if isinstance(first, Rod) else "force"
     x, y = getattr(first, field)
     return elements, field, "x" if abs(x) > abs(y) else "y"
+
+
+@action("next combination", "ctrl+g", "what acts: all cases, combinations, single cases", while_drawing=False)
+def _next_combination(context: Context, pixel: Vector) -> None:
+    """Let the next combination or load case act; after the last, all cases again."""
+    names, settings = choices(context.model), context.model.settings
+    if not names:
+        raise Refusal(
+            "There is one load case only. The boxes of a load say its case: select what bears it and press Return."
+        )
+    _let_act(context, names[(names.index(settings.combination) + 1) % len(names)])
+
+
+@action("show combination")
+def _show_combination(context: Context, pixel: Vector) -> None:
+    """The one whose button was pressed."""
+    if context.view.pressed is not None:
+        _let_act(context, choices(context.model)[context.view.pressed.item])
+
+
+def _let_act(context: Context, name: str) -> None:
+    context.view.envelope = False
+    context.model.settings.combination = name
+    if not context.view.legend:
+        context.notice = acting(context.model)
+
+
+action("toggle envelope", pressed=attrgetter("view.envelope"))(toggle("envelope"))
+
+
+@action("edit combinations", "", "load combinations", while_drawing=False)
+def _edit_combinations(context: Context, pixel: Vector) -> None:
+    """The boxes of all combinations, in which a new one is named first."""
+    context.select()
+    ACTIONS["properties"].perform(context, pixel)
+    context.scenes.apply(context)
+    context.scenes.active.click_box(context, COMBINATION)
 
 
 def _method(name: str, context: Context, pixel: Vector) -> None:

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from pinjoint.components import written
+from pinjoint.components.cases import PERMANENT, alone
 from pinjoint.components.field import CM, Field, Vector, on_screen
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
@@ -28,6 +29,7 @@ from pinjoint.systems.edit.placing import SAME, particle_at, place, snapped, sna
 from pinjoint.systems.edit.rods import check_ends, distance, join, members_met, place_at, share_at
 from pinjoint.systems.edit.supports import SUPPORTS, Held, next_support, support, support_towards
 from pinjoint.systems.edit.typed import UP, number, tidy, vector
+from pinjoint.systems.forms.answers import draw_load
 from pinjoint.systems.forms.properties import heading
 
 STEP = 10.0  # points, by which arrows are dragged
@@ -277,7 +279,7 @@ class DrawArrow(Drawing):
     def drop(self, context: Context, pixel: Vector) -> None:
         value, elements = self.value(context, pixel), [one for one in self.elements if one.exists]
         if elements:
-            context.model.assign(elements, self.field, [value] * len(elements))
+            draw_load(context.model, elements, self.field, value)
             named, rods = elements[0].said, begun(heading(context.model, elements))
             said = self.shown(value)
             context.notice = tr(self.says, particle=named, rods=rods, value=said, load=said)
@@ -367,6 +369,7 @@ class DrawSpanLoad(DrawArrow):
         start, *end = sorted(self.places)
         fields = (self.field, *[SpanLoad.start_intensity.name] * len(end))
         where: dict[str, Any] = {"start": [start], "end": end or [None]}
+        where["case"] = [alone(context.model) or PERMANENT]
         context.model.create(SpanLoad, 1, rod=[rod.row], **where, **{field: [value] for field in fields})
         context.select(rod)
         place = " … ".join(written.length(x, written.DIGITS) for x in (start, *end))

@@ -136,7 +136,7 @@ def narrow(search, h, gap):
             search[Search.NEAR_MARGIN] *= 0.5
         search[Search.FAR] = h
         search[Search.FAR_MARGIN] = gap
-        search[Search.MOVED] = -1.0
+        search[Search.MOVED] = min(search[Search.MOVED], 0.0) - 1.0
     elif search[Search.FAR] == 0.0 or gap <= EVENT_FLOOR:
         search[Search.ENDED] = 1.0
         return h
@@ -145,12 +145,14 @@ def narrow(search, h, gap):
             search[Search.FAR_MARGIN] *= 0.5
         search[Search.NEAR] = h
         search[Search.NEAR_MARGIN] = gap
-        search[Search.MOVED] = 1.0
+        search[Search.MOVED] = max(search[Search.MOVED], 0.0) + 1.0
     width = search[Search.FAR] - search[Search.NEAR]
     if width <= EVENT_WIDTH * search[Search.LENGTH]:
         search[Search.ENDED] = 1.0
         return search[Search.FAR] if search[Search.NEAR] > 0.0 else search[Search.LENGTH]
     share = search[Search.NEAR_MARGIN] / (search[Search.NEAR_MARGIN] - search[Search.FAR_MARGIN])
+    if abs(search[Search.MOVED]) >= EVENT_PATIENCE:  # margins of hardly more than rounding show no way: halve
+        share = 0.5
     return search[Search.NEAR] + width * min(max(share, 0.02), 0.98)
 
 

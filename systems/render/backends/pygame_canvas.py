@@ -66,23 +66,25 @@ class Canvas:
         v = picture.viewport
         before = surface.get_clip()
         surface.set_clip(pygame.Rect(*v.box).clip(before))
-        if picture.background is not None:
-            surface.fill(picture.background)
-        images: list[_Image] = []  # those that follow one another are drawn at once
-        for mark in picture.marks:
-            match mark:
-                case Text():
-                    images.append(self._text(mark))
-                case Stamps():
-                    images += self._stamps(mark)
-                case Panel() if mark.radius or mark.outline is not None or mark.fill[3] < 255:
-                    images += self._panel(mark)
-                case _:
-                    surface.fblits(images)
-                    images.clear()
-                    self._area(surface, mark)
-        surface.fblits(images)
-        surface.set_clip(before)
+        try:
+            if picture.background is not None:
+                surface.fill(picture.background)
+            images: list[_Image] = []  # those that follow one another are drawn at once
+            for mark in picture.marks:
+                match mark:
+                    case Text():
+                        images.append(self._text(mark))
+                    case Stamps():
+                        images += self._stamps(mark)
+                    case Panel() if mark.radius or mark.outline is not None or mark.fill[3] < 255:
+                        images += self._panel(mark)
+                    case _:
+                        surface.fblits(images)
+                        images.clear()
+                        self._area(surface, mark)
+            surface.fblits(images)
+        finally:  # also where a picture cannot be drawn
+            surface.set_clip(before)
 
     def _area(self, surface: pygame.Surface, mark: Mark) -> None:
         match mark:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.bent import borne_between
+from pinjoint.components.cases import case_told, factor_of_each, permanent
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import nodes
@@ -52,8 +53,9 @@ _OFF_ARCS = 6.0  # points between the arrow of a moment and that of a force
 
 def full_load(model: Model) -> Values:
     """The force (kN) and the moment (kN·m) on each particle, its loads at full size included, (n, 3)."""
-    found: Values = np.column_stack([model.particles.force, model.particles.moment])
-    np.add.at(found, model.loads.on, np.column_stack([model.loads.force, model.loads.moment]))
+    found: Values = permanent(model) * np.column_stack([model.particles.force, model.particles.moment])
+    loads = np.column_stack([model.loads.force, model.loads.moment])
+    np.add.at(found, model.loads.on, factor_of_each(model, "loads")[:, None] * loads)
     return found
 
 
@@ -314,7 +316,9 @@ def _write_forces(
     few = len(value) <= FEW_VALUES
     seen = np.flatnonzero(sheet.sees(0.5 * (start + end)))
     shown, worth = most_important(sheet, field, which, value, seen)
-    texts = [said(sheet, size, "kN", bare=not few) for size in np.abs(value[shown]).tolist()]
+    cases = [case_told(sheet.model, *of[index]) for index in shown.tolist()]
+    sizes = zip(np.abs(value[shown]).tolist(), cases, strict=True)
+    texts = [f"{said(sheet, size, 'kN', bare=not few)}{case}" for size, case in sizes]
     font = sheet.font(12.0 if few else 11.0)
     half, start, end = half_sizes(sheet, texts, font), start[shown], end[shown]
     places = by_arrows(half, start, end, _BY_ARROW * sheet.unit)

@@ -6,6 +6,7 @@ import numpy as np
 
 from pinjoint.components import written
 from pinjoint.components.bent import Axes
+from pinjoint.components.cases import case_told, factor_of_each, permanent
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.spans import Spans
 from pinjoint.components.tags import DiagramShown
@@ -131,9 +132,12 @@ def gaps(lengths: Values, unit: float) -> Values:
 
 def draw_span_loads(sheet: Sheet) -> None:
     """What acts between the ends of rods: rows of arrows on the side from which they push, single arrows, curved ones."""
-    spans = Spans.of(sheet.model)
-    if not len(spans.row):
+    spans, model = Spans.of(sheet.model), sheet.model
+    if not len(spans.row) or model.share == 0.0:  # nothing holds the structure, and it carries nothing
         return
+    acts = np.append(factor_of_each(model, "span_loads"), permanent(model))[spans.load, None]
+    force, first, last = acts * spans.force, acts * spans.first, acts * spans.last
+    spans = spans._replace(force=force, moment=acts[:, 0] * spans.moment, first=first, last=last)
     largest = sheet.model.share * max(float(np.hypot(*force.T).max()) for force in (spans.first, spans.last))
     spans = spans.some(np.isin(spans.row, sheet.rods))
     spread = (spans.first.any(axis=1) | spans.last.any(axis=1)) & (spans.end > spans.start)
@@ -205,7 +209,8 @@ def _draw_points(sheet: Sheet, spans: Spans) -> None:
         draw_arrows(sheet, of, tail, along, length, colour, ("span_loads.force", load[some]))
         sheet.explain("load", tail, tip)
         for k, value in enumerate(size.tolist()):
-            text, key = written.stated(value, "kN", written.DIGITS), ("span_loads.force", int(load[some[k]]))
+            key = "span_loads.force", int(load[some[k]])
+            text = f"{written.stated(value, 'kN', written.DIGITS)}{case_told(sheet.model, *key)}"
             places = by_arrows(half_sizes(sheet, [text])[0], tip[k], tail[k], 3.0 * u)
             leads = np.array([tail[k], 0.5 * (tail[k] + tip[k])]), -along[k]
             write(
@@ -286,7 +291,7 @@ def _shares_seen(sheet: Sheet, spans: Spans, length: Values) -> tuple[Values, Va
 def _label_row(
     sheet: Sheet, key: tuple[str, int], row: int, tails: Points, out: Points, size: float, shifted: bool
 ) -> None:
-    text, u = written.stated(size, "kN/m", written.DIGITS), sheet.unit
+    text, u = f"{written.stated(size, 'kN/m', written.DIGITS)}{case_told(sheet.model, *key)}", sheet.unit
     way = tails[-1] - tails[0]
     if shifted:
         out = np.array([way[1], -way[0]]) / max(float(np.hypot(*way)), 1e-9)

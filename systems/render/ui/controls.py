@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -10,7 +11,7 @@ import numpy as np
 from pinjoint.components.camera import Rectangle
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
-from pinjoint.components.slider import BUTTON, PAD, Place
+from pinjoint.components.slider import BUTTON, CHOICES, GAP, PAD, Place
 from pinjoint.components.view import Hit, View
 from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes
 from pinjoint.systems.render.theme import Theme, faded
@@ -34,7 +35,31 @@ def put_controls(paper: Paper, model: Model, view: View, theme: Theme) -> None:
             paper.hits.append(Hit(v.left, v.bottom - high, v.width, high, ""))
         for place in view.slider_places:
             paper.put(_slider(place, theme, paper), place)
+        _put_choices(paper, view, theme)
     _put_card(paper, model, view, theme)
+
+
+def _put_choices(paper: Paper, view: View, theme: Theme) -> None:
+    """The choices above the sliders, as many as have room, of the others those beside the one that is pressed."""
+    place, tools = view.choices_place, list(enumerate(view.sliders.choices))
+    if not tools:
+        return
+    parts = {}
+    for number, tool in tools:
+        ink = theme.focus if tool.pressed else theme.text
+        text = Text(tool.title, 12.0, ink, "semibold" if tool.pressed else "regular")
+        inside = Row((text,), around=(9.0, 0.0, 0.0), high=CHOICES - GAP - 4.0)
+        parts[number] = button(inside, tool.action, theme, pressed=tool.pressed, item=number, again=True)
+    shown = sorted(parts, key=lambda number: (not tools[number][1].pressed, number < len(parts) - 2, number))
+    while len(shown) > 1 and _row_of(parts, shown).width(paper.unit) > place.width:
+        shown.pop()
+    row = _row_of(parts, sorted(shown))
+    plate = Plate(row, faded(theme.panel, 0.94), theme.line, radius=6.0)
+    paper.put(plate, replace(place, width=row.width(paper.unit)))
+
+
+def _row_of(parts: Mapping[int, Plate], shown: Sequence[int]) -> Row:
+    return Row([parts[number] for number in shown], 2.0, (2.0, 0.0, 0.0))
 
 
 def _slider(place: Place, theme: Theme, paper: Paper) -> Plate:

@@ -12,6 +12,7 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.bent import farthest
 from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.components.cases import acting
 from pinjoint.components.field import on_screen
 from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
@@ -263,6 +264,8 @@ MEANINGS = {
     **NAMES,
 }
 _SCALES = ("utilisation", "axial utilisation")
+_ACTING = "acting"  # what of load cases is shown
+_IN_WORDS = (*THEORIES, _ACTING)
 UNITS = {
     "tension": "kN",
     "compression": "kN",
@@ -297,6 +300,8 @@ def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark],
     """
     v, u, theme = sheet.viewport, sheet.unit, sheet.theme
     meanings = meanings_of([*sheet.legend, *_theory(sheet)]) if sheet.view.legend and sheet.legend else {}
+    if meanings and (said := acting(sheet.model)):
+        meanings[_ACTING] = said
     if not meanings or v.width < LEAST_MODEL * u:
         return [], heading_end
     plates, beside = _arranged(tuple(meanings.items()), theme, v.width, right - v.left, u)
@@ -323,8 +328,8 @@ def _arranged(
     entries = [
         Row(
             (
-                *([] if name in THEORIES else [Drawn(partial(_swatch, name, theme), wide)]),
-                Text(said, 11.0, theme.text, "semibold" if name in THEORIES else "regular"),
+                *([] if name in _IN_WORDS else [Drawn(partial(_swatch, name, theme), wide)]),
+                Text(said, 11.0, theme.text, "semibold" if name in _IN_WORDS else "regular"),
             ),
             6.0,
         )

@@ -8,16 +8,18 @@ import numpy as np
 
 from pinjoint.components.camera import Rectangle
 from pinjoint.components.language import begun, tr
-from pinjoint.components.toolbar import BUTTON, EDGE, GAP, Tool, Toolbar
+from pinjoint.components.toolbar import BUTTON, EDGE, GAP, NAME, Tool, Toolbar
 from pinjoint.components.view import Hit, View
 from pinjoint.systems.render.labels.occupancy import STRONG, Occupancy
 from pinjoint.systems.render.marks import Panel, Picture
 from pinjoint.systems.render.theme import Theme
 from pinjoint.systems.render.typography import in_rows
-from pinjoint.systems.render.ui.buttons import button, tool_icon, written_key
+from pinjoint.systems.render.ui.buttons import button, ink_of, tool_icon, written_key
 from pinjoint.systems.render.ui.help import put_help
 from pinjoint.systems.render.ui.layout import Column, Gap, Paper, Part, Plate, Row, Text
 from pinjoint.systems.render.ui.menu import put_menu
+
+_BESIDE = 6.0  # points at the left of the name of a group
 
 
 def compose_toolbar(toolbar: Toolbar, view: View, theme: Theme, below: Sequence[Picture] = ()) -> Picture:
@@ -38,20 +40,27 @@ def _put_strip(paper: Paper, toolbar: Toolbar, view: View, theme: Theme) -> None
     s, thin = view.strip, max(round(paper.unit), 1)
     paper.marks.append(Panel(*s.box, 0.0, theme.panel))
     paper.marks.append(Panel(s.right - thin, s.top, thin, s.height, 0.0, theme.line))
-    columns, high = toolbar.columns(view.camera.viewport, paper.unit)
+    columns, high, wide, named = toolbar.arranged(view.camera.viewport, paper.unit)
     parts: list[Part] = []
-    for number, group in enumerate(toolbar.groups):
+    for number, (name, group) in enumerate(zip(toolbar.names, toolbar.groups, strict=True)):
         if number:
             parts.append(Gap(high=GAP, grow=float(number == len(toolbar.groups) - 1)))
+        if named:
+            said = Text(name, (10.5, 9.5, 9.0), theme.muted, "semibold", apart=NAME, grow=1.0)
+            parts.append(Row((said,), around=(_BESIDE, 0.0, 0.0), high=NAME))
         parts += [
-            Row([_button(tool, theme) for tool in row], high=high) for row in in_rows(list(group), columns)
+            Row([_button(tool, theme, wide) for tool in row], high=high)
+            for row in in_rows(list(group), columns)
         ]
     paper.put(Plate(Column(parts, around=(EDGE, EDGE, EDGE)), action="", wheel=("", "")), s)
 
 
-def _button(tool: Tool, theme: Theme) -> Plate:
-    sign = tool_icon(tool, theme, BUTTON[0])
-    return button(sign, tool.action, theme, enabled=tool.enabled, pressed=tool.pressed, item=tool, again=True)
+def _button(tool: Tool, theme: Theme, wide: float) -> Plate:
+    inside: Part = tool_icon(tool, theme, BUTTON[0])
+    if wide > BUTTON[0]:
+        ink, said = ink_of(theme, enabled=tool.enabled, pressed=tool.pressed), begun(tool.word or tool.title)
+        inside = Row((inside, Text(said, (12.0, 11.0, 10.0, 9.0), ink, wide=wide - BUTTON[0] - 2.0)), wide=wide)
+    return button(inside, tool.action, theme, enabled=tool.enabled, pressed=tool.pressed, item=tool, again=True)
 
 
 def _put_tip(paper: Paper, place: Hit, view: View, theme: Theme, below: Sequence[Picture]) -> None:

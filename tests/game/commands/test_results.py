@@ -134,7 +134,7 @@ def test_the_table_shows_every_element_with_units(solved: Model) -> None:
         "isostatic: equilibrium",
         "All is well.",
         "time 0.3 s, 1200 steps of 0.00025 s, integrator velocity_verlet",
-        "computed in 0.012 s, compiled in 1.5 s",
+        "computed in 0.012 s, ready after 1.5 s",
     ]
     assert "At load factor 0.5" in lines
     titles = next(n for n, line in enumerate(lines) if line.startswith("particle "))
@@ -155,7 +155,7 @@ def test_the_table_of_a_run_without_states() -> None:
     assert written(run(status="mechanism", time_step=None), "table").splitlines() == [
         "isostatic: mechanism",
         "time 0.3 s, 1200 steps, integrator velocity_verlet",
-        "computed in 0.012 s, compiled in 1.5 s",
+        "computed in 0.012 s, ready after 1.5 s",
     ]
 
 

@@ -203,3 +203,13 @@ def test_what_is_filled_may_reach_far_beyond_the_window(reach: float) -> None:
     )
     assert colour_at(surface, (50, 50)) == colour_at(surface, (2, 58)) == (0, 0, 255)
     assert colour_at(surface, (50, 30)) == colour_at(surface, (50, 70)) == (255, 255, 255)
+
+
+@pytest.mark.filterwarnings("ignore:invalid value")
+def test_a_picture_that_cannot_be_drawn_leaves_the_surface_to_others() -> None:
+    surface, clip = pygame.Surface((40, 30), depth=32), pygame.Rect(0, 0, 40, 30)
+    lines = np.array([[np.nan, 0.0]])
+    marks = [Strokes(lines, lines + 5.0, 2.0, LIGHT.ink)]
+    with pytest.raises(ValueError, match="NaN"):
+        Canvas().draw(surface, Picture(Viewport(0, 0, 20, 30), LIGHT.panel, marks))
+    assert surface.get_clip() == clip

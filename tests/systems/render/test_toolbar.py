@@ -5,17 +5,18 @@ import pytest
 from pinjoint import Session
 from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.language import begun, spoken
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import Hit, drawn_positions
-from pinjoint.editor.toolbar import TOOLBAR, of_mods
+from pinjoint.editor.toolbar import TOOLBAR, WORDS, of_mods
 from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.render.marks import Panel, Stamps, Text
 from pinjoint.systems.render.picture import compose, compose_all
 from pinjoint.systems.render.symbols import icon, icons
 from pinjoint.systems.render.theme import load_theme
-from pinjoint.systems.render.typography import capital_height
+from pinjoint.systems.render.typography import capital_height, text_width
 from tests.reference.boxes import overlap, text_box
 from tests.reference.hits import hits_in, push
 from tests.systems.render.pictures import marks_of
@@ -47,8 +48,9 @@ def tool(session: Session, action: str) -> Tool:
 
 
 def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
-    offered = [*(action for group in TOOLBAR for action in group), *of_mods(draw=True)]
+    offered = [*(action for group in TOOLBAR.values() for action in group), *of_mods(draw=True)]
     assert len(offered) == len(set(offered))
+    assert {*offered} <= {*WORDS}
     for action in offered:
         assert icon(action)
         assert any(binding.key and binding.title for binding in ACTIONS[action].bindings)
@@ -58,6 +60,33 @@ def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
         "pause",
         *(f"diagram {quantity}" for quantity in DIAGRAMS),
     }
+
+
+@pytest.mark.parametrize("spoken_now", ["en", "pt"])
+@pytest.mark.parametrize(
+    ("size", "worded", "named"),
+    [
+        ((1280, 800), True, True),
+        ((1000, 720), False, True),
+        ((1280, 640), False, False),
+        ((640, 480), False, False),
+    ],
+)
+def test_buttons_have_words_and_groups_names_where_there_is_room(
+    size: tuple[int, int], worded: bool, named: bool, spoken_now: str
+) -> None:
+    with spoken(spoken_now):
+        session = opened(size=size)
+        session.update_view()
+        strip, found = session.view.strip, buttons(session).values()
+        picture = compose(session.view.toolbar, session.view, load_theme("light"))
+        texts = [mark for mark in picture.marks if isinstance(mark, Text)]
+        said = {mark.text for mark in texts}
+        assert not any(text.endswith("…") for text in said)
+        assert all(mark.x + text_width(mark.text, mark.size, mark.weight) <= strip.right for mark in texts)
+        assert ({begun(tool.item.word) for tool in found} <= said) is worded
+        assert ({*session.view.toolbar.names} <= said) is named
+        assert all(hit.top + hit.height <= strip.bottom for hit in found)
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -194,7 +223,7 @@ def test_the_tip_names_the_action_and_its_key() -> None:
     button = buttons(session)["undo"]
     session.view.pointer = button.left + 5.0, button.top + 5.0
     toolbar, view = session.stages[-1]
-    assert compose(toolbar, view, load_theme()).texts == ["Undo", "Ctrl+Z"]
+    assert compose(toolbar, view, load_theme()).texts == [*view.toolbar.names, "Undo", "Ctrl+Z"]
 
 
 def test_pressed_and_unavailable_tools_look_different() -> None:
@@ -253,7 +282,7 @@ def test_the_tip_goes_after_a_press_and_comes_back_with_the_pointer() -> None:
             session.press("click", pointer)
         session.update_view()
         toolbar, view = session.stages[-1]
-        assert len(compose(toolbar, view, load_theme()).texts) == 2 * tips
+        assert len(compose(toolbar, view, load_theme()).texts) == len(view.toolbar.names) + 2 * tips
 
 
 @pytest.mark.parametrize("key", ["i", "a", "b"])
