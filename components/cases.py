@@ -149,6 +149,12 @@ def permanent(world: World) -> float:
     return float(Acting.of(world).permanent[0])
 
 
+def factor_of_each(world: World, table: str) -> NDArray[np.float64]:
+    """The factor of each load of a table, (loads,)."""
+    every: NDArray[np.float64] = getattr(Acting.of(world), table)[0]
+    return every
+
+
 def unknown_case(world: World) -> str:
     """The sentence about a case of the chosen combination that no load is of; "" if there is none."""
     known, chosen = cases(world), factors(world) or {}

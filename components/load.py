@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.cases import PERMANENT, Acting, check_case
+from pinjoint.components.cases import PERMANENT, check_case, factor_of_each
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import CM, LARGEST, MOVED, Field, FieldError, Vector
 from pinjoint.components.handle import Handle
@@ -297,7 +297,7 @@ def static_factor(history: History) -> float:
 
 def factor_now(world: World, load: Load) -> float:
     """The factor of a load in what columns show, by its history at the time of the run or in statics, and by its case."""
-    by_case = float(Acting.of(world).loads[0, load.row])
+    by_case = float(factor_of_each(world, load.table)[load.row])
     if world.solution is not None:
         return by_case * world.solution.share * static_factor(load.history)
     return by_case * factor_at(load.history, float(world.tables["clock"].time[0]))

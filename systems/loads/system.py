@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.cases import Acting
+from pinjoint.components.cases import factor_of_each
 from pinjoint.components.language import marked
 from pinjoint.components.load import HistoryKind, flattened
 from pinjoint.components.model import Model
@@ -48,7 +48,7 @@ class VaryingLoads(Law):
                 begun[id(history)] = len(values)
                 values += flattened(history[name] for name in self.kind.parameters)
             first.append(begun[id(history)])
-        prefix, factor = self.name.replace(".", "_"), Acting.of(model).loads[0, rows]
+        prefix, factor = self.name.replace(".", "_"), factor_of_each(model, "loads")[rows]
         return {
             **({f"{prefix}_moment": factor * model.loads.moment[rows]} if bends(model) else {}),
             f"{prefix}_on": np.ascontiguousarray(model.loads.on[rows]),

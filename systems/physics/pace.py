@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.cases import Acting
+from pinjoint.components.cases import factor_of_each
 from pinjoint.components.load import loads_end, varying
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
@@ -129,7 +129,7 @@ def _forces(model: Model) -> Array:
     loads, varies = model.loads, varying(model.loads)
     force: Array = model.particles.constant_force.copy()
     moment = model.particles.constant_moment.copy()
-    by_case = Acting.of(model).loads[0]
+    by_case = factor_of_each(model, "loads")
     np.add.at(force, loads.on[varies], (by_case[:, None] * loads.force)[varies])
     np.add.at(moment, loads.on[varies], (by_case * loads.moment)[varies])
     return (np.column_stack([force, moment]) if bends(model) else force).ravel()
