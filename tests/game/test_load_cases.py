@@ -4,12 +4,10 @@ import json
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
-from pinjoint.components.bent import inner_forces
 from pinjoint.components.cases import acting, choices
 from pinjoint.components.language import spoken
 from pinjoint.documents.document import document, parse
@@ -21,7 +19,6 @@ from pinjoint.systems.render.theme import load_theme
 from tests.game.test_frames_by_mouse import opened
 from tests.game.test_influence import three_spans
 from tests.game.test_sheet import figures_of
-from tests.verification.test_load_cases import frame
 
 Document = dict[str, Any]
 
@@ -199,39 +196,6 @@ def test_in_portuguese() -> None:
 # --- envelopes -------------------------------------------------------------------------------------------
 
 
-def brute(session: Session, quantity: str) -> np.ndarray:
-    """What each combination makes of a quantity at 201 places of every rod, one after the other."""
-    found = []
-    for name in session.settings.combinations:
-        session.settings.combination = name
-        every = np.arange(session.rods.count)
-        found.append(inner_forces(session.model, every, quantity).at(np.linspace(0.0, 1.0, 201)))
-    return np.array(found)
-
-
-@pytest.mark.parametrize("theory", ["first-order", "exact"])
-@pytest.mark.parametrize("quantity", "NVM")
-def test_envelopes_are_those_of_all_combinations(theory: str, quantity: str) -> None:
-    session = in_statics(frame(3))
-    session.settings.theory = theory
-    envelope = session.document.envelopes.envelope
-    assert envelope.names == ("ULS", "all")
-    (least, most), wanted = envelope.along(quantity), brute(session, quantity)
-    size = np.abs(wanted).max()
-    for row, shares in enumerate(envelope.shares):
-        for found, of in ((least, wanted.min(axis=0)), (most, wanted.max(axis=0))):
-            kinks = np.interp(np.linspace(0.0, 1.0, 201), shares, found[row])
-            assert np.median(np.abs(kinks - of[row])) <= 1e-3 * size
-    extremes, station, combination = envelope.extremes(quantity)
-    assert (extremes[:, 0] <= wanted.min(axis=(0, 2)) + 1e-9 * size).all()
-    assert (extremes[:, 1] >= wanted.max(axis=(0, 2)) - 1e-9 * size).all()
-    for row, side in np.ndindex(*extremes.shape):
-        session.settings.combination = envelope.names[combination[row, side]]
-        share = envelope.shares[row, station[row, side]]
-        here = inner_forces(session.model, np.array([row]), quantity).at(np.array([share]))[0, 0]
-        assert here == pytest.approx(extremes[row, side], abs=1e-9 * size)
-
-
 def test_the_window_draws_the_envelope_with_what_governs() -> None:
     """Three spans, ULS and with a support that settles by 1 cm: numbers by three moments, read from the picture."""
     session = in_statics(beam())
@@ -272,15 +236,16 @@ def test_there_is_none_without_combinations_or_equilibrium() -> None:
     session = in_statics(beam(combinations={}))
     session.act("toggle envelope")
     session.frame(0.0)
-    assert session.notice.startswith("There is no envelope")
+    assert session.notice.startswith("The model has no combinations")
     assert not session.view.envelope
     source = beam(theory="exact")
     source["settings"]["combinations"]["too much"] = {"snow": 1e7}
     session = in_statics(source | {"settings": source["settings"] | {"theory": "exact"}})
     session.act("toggle envelope")
     session.frame(0.0)
-    envelope = session.document.envelopes.envelope
-    assert {*envelope.names, *envelope.unsolved} == {"ULS", "all", "too much"}
+    assert session.view.enveloped.combinations == ("ULS", "all")
+    assert list(session.view.enveloped.without) == ["too much"]
+    assert "left out of the envelope: too much" in session.view.status.notice
 
 
 def test_commands_draw_cases_combinations_and_envelopes(tmp_path: Path) -> None:
@@ -288,7 +253,7 @@ def test_commands_draw_cases_combinations_and_envelopes(tmp_path: Path) -> None:
     model.write_text(json.dumps(beam()), encoding="utf-8")
     for options, said in (
         (["--combination", "ULS"], "ULS: 1.35 permanent + 1.5 snow"),
-        (["--case", "snow"], "case snow"),
+        (["--combination", "snow"], "case snow"),
         (["--envelope"], "envelope of ULS and all"),
     ):
         assert main(["render", str(model), "--static", "--diagrams", *options, "--output", str(made)]) == 0
@@ -298,4 +263,4 @@ def test_commands_draw_cases_combinations_and_envelopes(tmp_path: Path) -> None:
     figures = figures_of(contents(Solved(parse(beam()), "first-order", enveloped=True), LAYOUTS[0]))
     captions = [figure.caption.text for figure in figures]
     assert any(caption.startswith("Envelope of ULS and all: Bending moments M") for caption in captions)
-    assert main(["sheet", str(model), "--case", "snow", "--output", str(tmp_path / "sheet.pdf")]) == 0
+    assert main(["sheet", str(model), "--combination", "snow", "--output", str(tmp_path / "sheet.pdf")]) == 0

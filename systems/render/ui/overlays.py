@@ -302,7 +302,9 @@ def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark],
     meanings = meanings_of([*sheet.legend, *_theory(sheet)]) if sheet.view.legend and sheet.legend else {}
     if meanings and (said := acting(sheet.model)):
         shown = sheet.view.enveloped
-        meanings[_ACTING] = said if shown is None else tr("envelope of {names}", names=listed(shown.names))
+        meanings[_ACTING] = (
+            said if shown is None else tr("envelope of {names}", names=listed(shown.combinations))
+        )
     if not meanings or v.width < LEAST_MODEL * u:
         return [], heading_end
     plates, beside = _arranged(tuple(meanings.items()), theme, v.width, right - v.left, u)
