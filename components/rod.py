@@ -194,6 +194,13 @@ class Rod(Handle):
     yielded_at: Field[float | None] = state(
         "s", nullable=True, absent="not yet", doc="When it first yielded in this run."
     )
+    hinge_formed_at: Field[Vector] = state(
+        "s",
+        shape=(2,),
+        axes=ENDS,
+        default=(-1.0, -1.0),
+        doc="When plastic hinges first formed at its ends in this run; −1: not yet.",
+    )
     stiffness: Field[float] = derived(
         "kN",
         default=DEFAULT_STIFFNESS,
@@ -566,7 +573,17 @@ def can_yield(world: World) -> bool:
 
 def can_hinge(world: World) -> bool:
     """True if plasticity is on and some end of a rod has a plastic moment."""
-    return bool(world.tables["settings"].plasticity[0] and np.isfinite(world.tables["rods"].moment_limit).any())
+    return bool(world.tables["settings"].plasticity[0]) and has_plastic_moments(world)
+
+
+def has_plastic_moments(world: World) -> bool:
+    """True if some end of a rod has a plastic moment, whether plasticity is on or not."""
+    return bool(np.isfinite(world.tables["rods"].moment_limit).any())
+
+
+def is_kinked(world: World) -> bool:
+    """True if some end of a rod has turned in a plastic hinge, or can."""
+    return can_hinge(world) or bool(world.tables["rods"].plastic_rotation.any())
 
 
 def has_strength(world: World) -> bool:
@@ -579,6 +596,29 @@ def bends_unchecked(world: World) -> NDArray[np.bool_]:
     """Of which rods utilisation leaves out the bending, for want of a section that knows its depth, (rods,)."""
     rods = world.tables["rods"]
     found: NDArray[np.bool_] = (rods.turning_shares > 0.0).any(axis=1) & np.isnan(rods.section_modulus)
+    return found
+
+
+def thrust(world: World) -> NDArray[np.float64]:
+    """Axial force over the strength, where it is largest, of each rod, (rods,); 0 of those without a strength."""
+    rods = world.tables["rods"]
+    pulled = rods.end_axial_force / rods.tension_limit[:, None]
+    pressed = -rods.end_axial_force / rods.compression_limit[:, None]
+    found: NDArray[np.float64] = np.maximum(pulled, pressed).max(axis=1, initial=0.0)
+    return found
+
+
+def reduced_plastic_moment(world: World) -> NDArray[np.float64]:
+    """M_p beside axial forces, 1.18 M_p (1 − n) ≤ M_p with n as of `thrust`, (rods,); NaN without a plastic moment.
+
+    Of I-sections bent in the plane of their webs [B. G. Neal, 1977]. Hinges do not heed it; it is for checking.
+    """
+    rods = world.tables["rods"]
+    limit = rods.moment_limit.min(axis=1)
+    share = np.clip(1.18 * (1.0 - thrust(world)), 0.0, 1.0)
+    found: NDArray[np.float64] = np.where(
+        np.isfinite(limit), share * np.where(np.isfinite(limit), limit, 0.0), np.nan
+    )
     return found
 
 

@@ -21,6 +21,7 @@ from pinjoint.figures import diagram_titles, figure, printed, shape, signs
 from pinjoint.results import Results
 from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.render.backends.paper import LAYOUTS, Block, Layout, as_paper, in_rows
+from pinjoint.systems.statics.state import Start
 from pinjoint.tables import Column, Table
 
 _FLAT = 1.6  # times as wide as high: of such structures each figure has a row of its own
@@ -54,8 +55,8 @@ class Solved:
         self.model = copy = load(document(model))
         copy.settings.theory = theory
         copy.delete(list(copy.grids))
-        strain = copy.rods.plastic_strain.copy() if copy.clock.time == 0.0 else np.zeros(copy.rods.count)
-        statics = Statics(copy, lambda: strain)
+        permanent = Start.present(copy).permanent * (copy.clock.time == 0.0)
+        statics = Statics(copy, lambda: permanent)
         settlement = statics.settlement
         if settlement is None or not statics.balanced:
             reason = statics.message

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -76,8 +77,7 @@ class Assessment:
         begun = self._begun
         revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
         if self._theories is None or self._theories[0] != revision:
-            names = ("particles.displacement", "rods.plastic_strain", "particles.rotation")
-            start = Start(*(begun.column(self._model, name).copy() for name in names)) if begun else None
+            start = Start.stored(partial(begun.column, self._model)) if begun else None
             self._theories = revision, Theories.of(self._model, start)
         return self._theories[1]
 

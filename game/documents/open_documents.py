@@ -35,7 +35,8 @@ from pinjoint.systems.schedule import Schedule
 
 Source = str | Path | Mapping[str, Any]  # of a model: a file, the name of a bundled one, or its content
 
-SETTLED = ("particles.displacement", "particles.rotation", "rods.plastic_strain")  # what settling changes
+YIELDED = ("rods.plastic_strain", "rods.plastic_rotation")
+SETTLED = ("particles.displacement", "particles.rotation", *YIELDED)  # what settling changes
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,7 @@ class OpenDocument:
         self.undeformed: Snapshot | None = None
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
-        self.statics = Statics(model, self._strain_undeformed)
+        self.statics = Statics(model, self._permanent_undeformed)
         self.exaggeration = Exaggeration(model)
         self.chronicle = Chronicle(model, self.simulation)
         self.file = file
@@ -118,13 +119,12 @@ class OpenDocument:
         table, _, field = name.partition(".")
         return self.model.tables[table].storage(field)
 
-    def _strain_undeformed(self) -> Column:
-        """The plastic strain from before it was run or settled."""
-        name = "rods.plastic_strain"
+    def _permanent_undeformed(self) -> Column:
+        """The plastic strain and rotations from before it was run or settled, (rods, 3)."""
         if self.is_undeformed:
-            return self._held(name).copy()
+            return np.column_stack([self._held(name) for name in YIELDED])
         begun = self.undeformed or Snapshot.initial(self.model)
-        return begun.column(self.model, name).copy()
+        return np.column_stack([begun.column(self.model, name) for name in YIELDED])
 
     def _note_undeformed(self) -> None:
         """Time is about to pass, or the structure to settle."""
@@ -191,8 +191,7 @@ class OpenDocument:
         if anew:  # without settlements by loads, which the state would then have twice
             moved = of_rigid_supports(model, start.displacement)
             turned = np.where(model.particles.fixed_rotation, start.rotation, 0.0)
-            start = Start(moved, self._strain_undeformed(), turned)
-        strain = start.plastic_strain
+            start = Start(moved, turned, self._permanent_undeformed())
         found = settle(model, factors, start=start)
         with model.transaction("settle"):
             found.final.put(model)
@@ -205,7 +204,10 @@ class OpenDocument:
                     found.final.contacts, 1000.0 * found.final.contact_force
                 )
         self.assessment.disturb("settled")
-        account, yielded = [found.account], np.flatnonzero(found.final.plastic_strain != strain)
+        account, yielded = (
+            [found.account],
+            np.flatnonzero((found.final.permanent != start.permanent).any(axis=1)),
+        )
         if len(yielded) and not found.events:  # at once: what it began from is beyond the strengths
             rod = model.describe(model.rods[yielded[0]])
             said = plural(

@@ -56,13 +56,13 @@ class Step:
 class Statics:
     """The static solution of a model: a function of its document, by the theory and load steps of its settings.
 
-    strain: the plastic strain of its undeformed beginning. settlement: the way through the load steps; None where none
-    can be computed, which `problem` explains. motion: into which its last state passes, where that is no equilibrium.
-    revision: at which it was found. offered: that of which a person was told that it would not move.
+    permanent: plastic strain and rotations of its undeformed beginning, (rods, 3). settlement: the way through the load
+    steps; None where none can be computed, which `problem` explains. motion: into which its last state passes, where that
+    is no equilibrium. revision: at which it was found. offered: that of which a person was told that it would not move.
     """
 
-    def __init__(self, model: Model, strain: Callable[[], Column]) -> None:
-        self._model, self._strain = model, strain
+    def __init__(self, model: Model, permanent: Callable[[], Column]) -> None:
+        self._model, self._permanent = model, permanent
         self._of: tuple[object, ...] = ()
         self._sought: tuple[object, ...] = ()  # what it follows from that was sought last
         self._solving: Behind[Settlement] | None = None
@@ -228,7 +228,7 @@ class Statics:
 
         model, settings = acting or self._model, self._model.settings
         factors = settings.load_steps if load_factors is None else load_factors
-        return settle(model, factors, theory or settings.theory, Start.undeformed(model, self._strain()))
+        return settle(model, factors, theory or settings.theory, Start.undeformed(model, self._permanent()))
 
     def second_order(self, elapsed: float | None = None) -> str:
         """By how much, and where, the theories differ, where that is worth a word; "" of a large structure.

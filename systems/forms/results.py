@@ -154,7 +154,8 @@ def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Reading]:
         (tr("V at its ends"), Rod.shear, "kN", 1.0),
         (tr("M at its ends"), Rod.bending_moment, "kN·m", 1.0),
         (tr("rotation of its ends"), Rod.end_rotation, *_MRAD),
-    )[: 4 if bends else 2]:
+        (tr("plastic rotation of its ends"), Rod.plastic_rotation, *_MRAD),
+    )[: 2 if not bends else 5 if rods.plastic_rotation[row].any() else 4]:
         values = factor * columns(f"rods.{field.name}")
         yield _vector(title, values[row], values, unit, field, axes=ends)
 

@@ -17,7 +17,11 @@ from pinjoint.components.derived import on_axis
 from pinjoint.components.model import Model
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
+ROUND_OFF = float(np.finfo(np.float64).eps)
+UNLIMITED = 1e200  # kN·m, of ends without a plastic moment, with which one may compute
+SENSES = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)]  # in which both ends may flow
 WITHIN = 2.5  # −N L₀²/EI of one rod, up to which its cubic bends as compression makes it
 
 
@@ -42,6 +46,7 @@ class Bending:
     """What the ends of rods feel, as in the columns of the same names.
 
     end_stiffness, bowing: (rods, 3) for (start start, start end, end end); span_load: (rods, 7); the others (rods, 2).
+    moment_limit: plastic moments, infinite of ends that do not yield.
     """
 
     rest_length: Array
@@ -51,16 +56,19 @@ class Bending:
     fixity: Array
     initial_slopes: Array
     span_load: Array
+    moment_limit: Array
 
     @classmethod
     def of(cls, model: Model, *, bows: bool) -> Bending:
-        """That of a model; in first-order theory rods do not bow."""
+        """That of a model; in first-order theory rods do not bow, and without plasticity no end yields."""
         columns = {field.name: model.rods.column(field.name).copy() for field in fields(cls)}
         columns["bowing"] *= bows
+        if not model.settings.plasticity:
+            columns["moment_limit"][...] = np.inf
         return cls(**columns)
 
     @property
-    def rigid(self) -> NDArray[np.bool_]:
+    def rigid(self) -> Flags:
         """The ends that are joined rigidly, (rods, 2)."""
         return self.turning_shares > 0.0
 
@@ -70,6 +78,7 @@ class Bending:
             name: np.concatenate([values, np.zeros((len(rest_length), *values.shape[1:]))])
             for name, values in vars(self).items()
         }
+        more["moment_limit"][len(self.rest_length) :] = np.inf
         return replace(self, **more | {"rest_length": np.concatenate([self.rest_length, rest_length])})
 
     # --- hinges ------------------------------------------------------------------------------------
@@ -79,14 +88,14 @@ class Bending:
         """The moment at each end by its own slope, (rods, 2)."""
         return self.end_stiffness[:, ::2]
 
-    def carried_over(self, moment: Array, hinges: NDArray[np.bool_]) -> Array:
+    def carried_over(self, moment: Array, hinges: Flags) -> Array:
         """What moments (rods, 2) at hinges leave at the other ends while these do not turn, (rods, 2)."""
         stiff, mixed = self._of_ends, self.end_stiffness[:, 1:2]
         share = np.divide(mixed, stiff, where=hinges & (stiff != 0.0), out=np.zeros_like(stiff))
         over: Array = np.where(hinges, 0.0, (share * moment)[:, ::-1])
         return over
 
-    def hinged(self, hinges: NDArray[np.bool_]) -> Bending:
+    def hinged(self, hinges: Flags) -> Bending:
         """The same with hinges at some rigid ends, (rods, 2), at which slopes are still those of the joints."""
         own = np.where(hinges, 0.0, self._of_ends - self.carried_over(self.end_stiffness[:, [1, 1]], hinges))
         mixed = np.where(hinges.any(axis=1), 0.0, self.end_stiffness[:, 1])
@@ -131,6 +140,31 @@ class Bending:
         energy: Array = 0.5 * (bend * _product(self.end_stiffness, bend)).sum(axis=1)
         return energy
 
+    # --- plastic hinges ------------------------------------------------------------------------------
+
+    def by_slopes(self, axial_force: Array) -> Array:
+        """Moments by the slopes of both ends, K + N L₀ B, (rods, 2, 2)."""
+        stiffness: Array = self.end_stiffness + (axial_force * self.rest_length)[:, None] * self.bowing
+        return stiffness[:, [0, 1, 1, 2]].reshape(-1, 2, 2)
+
+    def end_moments(self, slopes: Array, axial_force: Array, axis: Array, share: float) -> Array:
+        """Those (rods, 2) of rods with these slopes and axial forces, as in `bent`."""
+        bowed, across = self.bow(slopes)[0], on_axis(share * self.span_load, axis)[1]
+        moment: Array = _product(self.end_stiffness, slopes - self.initial_slopes) - across
+        return moment + axial_force[:, None] * bowed
+
+    def hessian(self, bent: Bent, extensional: Array, axial_force: Array, geometric: bool) -> Array:
+        """d²/d(e, ψ, φ of both ends)² of the potential, (rods, 4, 4); e, ψ: elongation and turning of the chord."""
+        found = np.zeros((len(extensional), 4, 4))
+        found[:, 0, 0] = extensional
+        found[:, 0, 2:] = found[:, 2:, 0] = extensional[:, None] * bent.bowed
+        found[:, 2:, 2:] = extensional[:, None, None] * _dyad(bent.bowed, bent.bowed)
+        found[:, 2:, 2:] += self.by_slopes(axial_force if geometric else np.zeros_like(axial_force))
+        if geometric:
+            found[:, 1, 2:] = found[:, 2:, 1] = bent.along
+            found[:, 1, 1] = (bent.across * bent.slopes).sum(axis=1)
+        return found
+
     # --- rates ---------------------------------------------------------------------------------------
 
     def slope_rates(self, change: Array, turns: Array, axis: Array, length: Array) -> Array:
@@ -144,11 +178,18 @@ class Bending:
         return _product(self.end_stiffness, slopes)
 
     def stiffness(
-        self, bent: Bent, extensional: Array, axial_force: Array, axis: Array, length: Array, geometric: bool
+        self,
+        bent: Bent,
+        extensional: Array,
+        axial_force: Array,
+        axis: Array,
+        length: Array,
+        geometric: bool,
+        flowing: Flags | None = None,
     ) -> Array:
         """d²/d(x, y, θ of both ends)² of the potential, (rods, 6, 6), less what a straight bar has.
 
-        extensional: EA/L₀, 0 of rods that do not resist elongation.
+        extensional: EA/L₀, 0 of rods that do not resist elongation. flowing: ends whose moments stay (rods, 2).
         """
         inverse = 1.0 / np.where(length > 0.0, length, np.inf)
         # In the basis (n · ds, m · ds, dθ_a, dθ_b) of the chord's direction n and left side m.
@@ -172,6 +213,13 @@ class Bending:
             turning = _dyad(turned, bent.along[:, :1] * start + bent.along[:, 1:] * end)
             block += turning + turning.swapaxes(1, 2)
             block += (bent.across * bent.slopes).sum(axis=1)[:, None, None] * _dyad(turned, turned)
+        if flowing is not None and flowing.any():
+            hessian = self.hessian(bent, extensional, axial_force, geometric)
+            axial[:] = 0.0
+            axial[:, 0] = 1.0
+            basis = np.stack([axial, turned, start, end], axis=1)
+            pulled = hessian[:, 2:] @ basis
+            block -= pulled.swapaxes(1, 2) @ flows(hessian[:, 2:, 2:], pulled, flowing)
         way = np.zeros((len(length), 4, 6))
         way[:, 0, 3:5], way[:, 1, 3], way[:, 1, 4] = axis, -axis[:, 1], axis[:, 0]
         way[:, :2, :2] = -way[:, :2, 3:5]
@@ -194,6 +242,48 @@ def needed_parts(model: Model, axial_force: Array, slopes: Array | None = None) 
     by_slopes = 0.0 if slopes is None else 4.0 * np.abs(slopes).max(axis=1, initial=0.0) / math.tau - 1e-9
     parts: NDArray[np.intp] = np.ceil(np.maximum(by_force, by_slopes)).astype(np.intp)
     return np.maximum(parts, 1)
+
+
+def flows(stiffness: Array, excess: Array, flowing: Flags) -> Array:
+    """By what ends that flow (rods, 2) turn in their hinges so that these moments vanish there, (rods, 2, …); 0 at others.
+
+    stiffness: moments by both slopes, (rods, 2, 2). excess: (rods, 2, …).
+    """
+    own = stiffness[:, [0, 1], [0, 1]]
+    flowing = flowing & (own != 0.0)
+    mixed = np.where(flowing.all(axis=1), stiffness[:, 0, 1], 0.0)[:, None, None]
+    own = np.where(flowing, own, 1.0)[:, :, None]
+    given = np.where(flowing[:, :, None], excess.reshape(*flowing.shape, -1), 0.0)
+    across = own[:, ::-1] * given - mixed * given[:, ::-1]
+    found: Array = (across / (own[:, :1] * own[:, 1:] - mixed * mixed)).reshape(excess.shape)
+    return found
+
+
+def at_limits(sense: Array, limit: Array) -> Array:
+    """The moments of ends that flow in these senses, 1 or −1; 0 of others."""
+    edge: Array = sense * np.where(sense != 0.0, limit, 0.0)
+    return edge
+
+
+def yielding(stiffness: Array, moment: Array, limit: Array) -> Array:
+    """The senses, 1 or −1, in which ends flow so that no moment exceeds its limit, 0 of others, (rods, 2).
+
+    A linear complementarity problem of two. moment: of the ends if none flows; the rest as of `flows` and `Bending`.
+    """
+    found, rows = np.zeros_like(moment), np.flatnonzero((np.abs(moment) > limit).any(axis=1))
+    if not len(rows):
+        return found
+    stiffness, moment, limit = stiffness[rows], moment[rows], np.minimum(limit[rows], UNLIMITED)
+    senses, solved = np.zeros_like(moment), np.zeros(len(rows), dtype=bool)
+    noise = 4.0 * ROUND_OFF * np.abs(moment).max(axis=1, initial=0.0, keepdims=True)
+    for sense in SENSES:
+        way = np.broadcast_to(sense, moment.shape)
+        turned = flows(stiffness, moment - at_limits(way, limit), way != 0)
+        left = np.abs(moment - (stiffness @ turned[:, :, None])[:, :, 0])
+        right = np.where(way != 0, way * turned >= 0.0, left <= limit + noise).all(axis=1)
+        senses[right & ~solved], solved = sense, solved | right
+    found[rows] = senses
+    return found
 
 
 def _product(symmetric: Array, vectors: Array) -> Array:

@@ -142,12 +142,11 @@ def _ahead(
 ) -> tuple[Response, Array, Matrix, Matrix]:
     """The rods in an exact equilibrium, the rate of their axial forces along the path of equilibria (kN for each 1 of the
     load factor), the tangent stiffness there, and its rate."""
-    limits = np.full(len(structure.ends), np.inf)
-    structure = replace(structure, tension_limit=limits, compression_limit=limits)
+    structure = structure.unyielding
     place = structure.field(about.displacement, about.rotation)
 
     def rods(by: float, motion: Array | float = 0.0) -> Response:
-        return structure.respond(place + by * motion, about.plastic_strain, about.load_factor + by)
+        return structure.respond(place + by * motion, about.permanent, about.load_factor + by)
 
     here = rods(0.0)
     stiffness = structure.tangent(here, here.slack)

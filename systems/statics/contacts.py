@@ -235,8 +235,9 @@ class Sinking:
     def _use(self, lengthened: Array) -> None:
         """Go on with contacts of this lengthening; they do not yield."""
         self.lengthened = lengthened
-        plastic_strain = np.zeros(self.rods.stop + len(lengthened))
-        plastic_strain[self.rods] = self.point.plastic_strain[self.rods]
+        of_rods = self.point.plastic_strain[self.rods]
+        plastic_strain = np.zeros((self.rods.stop + len(lengthened), *of_rods.shape[1:]))
+        plastic_strain[self.rods] = of_rods
         self.path = Path(self._with_contacts(), self.load, np.zeros_like(self.load), self.shares)
         start = self.path.start(self.point.displacement, plastic_strain)
         self.point = replace(start, dissipated=self.point.dissipated)

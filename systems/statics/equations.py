@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,7 @@ from pinjoint.components.theory import EXACT, FIRST_ORDER, THEORIES
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import Assembly, Matrix, spread_by_ends
 from pinjoint.systems.statics.behind import rest
-from pinjoint.systems.statics.bending import Bending, Bent
+from pinjoint.systems.statics.bending import Bending, Bent, at_limits, flows, yielding
 
 if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix
@@ -38,6 +38,8 @@ Rows = NDArray[np.intp]
 
 AXES = ("x", "y", "rotation")  # of a particle
 TURNS_ONLY = 1e-9  # m/rad: a motion that shifts particles by less is one of rotations
+MOST_ITERATIONS = 60  # for the axial force of a rod with plastic hinges
+UNBALANCED = 1e-13  # of the largest force, by the length of a rod: a moment that is round-off
 AT_LIMIT = 1e-10  # share of its strength within which a rod counts as yielding
 ROUND_OFF = float(np.finfo(np.float64).eps)
 
@@ -64,6 +66,16 @@ def upright(motion: Array) -> Array:
     return turned
 
 
+def of_axes(values: NDArray[Any]) -> NDArray[Any]:
+    """Of what can yield, (rods,) or with both ends (rods, 3), that of the axes, (rods,)."""
+    return values if np.ndim(values) < 2 else values[:, 0]
+
+
+def of_rods(flags: Flags) -> Flags:
+    """Of flags of what can yield, rods of which any part has one, (rods,)."""
+    return flags if flags.ndim == 1 else flags[:, 0] | flags[:, 1] | flags[:, 2]
+
+
 @dataclass(frozen=True)
 class Response:
     """The state of the rods at given displacements, by return mapping from a given plastic strain; (rods,).
@@ -73,6 +85,10 @@ class Response:
     buckled. round_off: what rounding alone makes of elastic_force (kN). elongation: of the axis, which may bow. bent: how
     members bend; None where none do. share: of the distributed forces that acts. spring_force: what holds particles against
     elastic supports, (n, …).
+
+    Where ends yield, as plastic hinges, these are (rods, 3), of the axis and of both ends: elastic_force (of ends moments,
+    kN·m, as if only the other end yielded), plastic_strain (rotations, rad), flowing, slack, round_off, and tied: ends that
+    flow, too, but count as if they did not, so that something holds their joints.
     """
 
     elongation: Array
@@ -88,6 +104,7 @@ class Response:
     bent: Bent | None = None
     share: float = 0.0
     spring_force: Array | float = 0.0
+    tied: Flags | bool = False
 
     @property
     def soft(self) -> Flags:
@@ -95,12 +112,26 @@ class Response:
         return self.flowing | self.slack
 
     @property
+    def force(self) -> Array:
+        """Of all that can yield: axial forces, and where ends do moments on them (rods, 3)."""
+        if self.flowing.ndim == 1 or self.bent is None:
+            return self.axial_force
+        return np.column_stack([self.axial_force, self.bent.moment])
+
+    @property
+    def deformation(self) -> Array:
+        """Of the same, yielding included: elongations (m), and where ends yield their slopes, (rods, 3)."""
+        if self.flowing.ndim == 1 or self.bent is None:
+            return self.elongation
+        return np.column_stack([self.elongation, self.bent.slopes + self.plastic_strain[:, 1:]])
+
+    @property
     def reach(self) -> Array:
         """What motions are measured by (m): the length, of slack cables that at which they tighten.
 
         A slack cable may shrink to a point and turn over without anything changing.
         """
-        tightens: Array = np.where(self.slack, self.length - self.elongation, 0.0)
+        tightens: Array = np.where(of_axes(self.slack), self.length - self.elongation, 0.0)
         return np.maximum(self.length, tightens)
 
 
@@ -111,6 +142,7 @@ class Branches:
     force: elastic of slack rods, else axial (kN). low, high: the forces at which the piece ends. outward: the
     sense of elongation, 1 or −1, in which a rod at an end of its piece leaves it; 0 elsewhere. verge:
     one-sided rods that are about to tighten or slacken, struts about to buckle. slack: the others beyond that.
+    Where ends yield, (rods, 3), as of `Response`.
     """
 
     force: Array
@@ -119,6 +151,15 @@ class Branches:
     outward: Array
     slack: Flags
     verge: Flags
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece of the laws of all that can yield, (rods, 3): what flows at the force `edge`, and what is slack."""
+
+    flowing: Flags
+    slack: Flags
+    edge: Array
 
 
 @dataclass(frozen=True)
@@ -138,7 +179,8 @@ class Structure:
     flat: rods whose axis keeps its direction, such as contacts with a straight side.
     first_order: elongations and equilibrium about the original positions. inextensible: rows of the rods that keep their
         lengths, which first-order theory alone heeds.
-    bending: of the rods; None where none bends. sparse: matrices are, above DENSE unknowns.
+    bending: of the rods; None where none bends. ends_yield: some have plastic moments, or have turned in plastic hinges.
+    sparse: matrices are, above DENSE unknowns.
     """
 
     position: Array
@@ -162,6 +204,7 @@ class Structure:
     inextensible: Rows
     buckling_load: Array
     bending: Bending | None = None
+    ends_yield: bool = False
     sparse: bool = True
 
     @classmethod
@@ -205,6 +248,7 @@ class Structure:
             inextensible=np.flatnonzero(firm),
             buckling_load=buckling_load,
             bending=bending,
+            ends_yield=bool(np.isfinite(rods.moment_limit).any() or rods.plastic_rotation.any()),
         )
 
     def with_translations(self) -> Structure:
@@ -215,6 +259,14 @@ class Structure:
         """The same structure without supports."""
         free = replace(self, fixed=np.zeros_like(self.fixed), springs=np.zeros_like(self.springs))
         return free.with_translations()
+
+    @property
+    def unyielding(self) -> Structure:
+        """The same structure without limits to any force."""
+        limitless, bending = np.full(len(self.ends), np.inf), self.bending
+        if bending is not None:
+            bending = replace(bending, moment_limit=np.full_like(bending.moment_limit, np.inf))
+        return replace(self, tension_limit=limitless, compression_limit=limitless, bending=bending)
 
     @property
     def struts(self) -> Flags:
@@ -236,12 +288,12 @@ class Structure:
         load, force = np.where(self.struts, self.buckling_load, 0.0), response.axial_force
         beyond = self.stiffness * self.folded(response)
         stored = load**2 + 2.0 * load * beyond + self.softening * beyond**2 - force**2
-        buckled = (beyond > 0.0) & (force > response.elastic_force)
+        buckled = (beyond > 0.0) & (force > of_axes(response.elastic_force))
         return np.where(buckled, self.rest_length / self.stiffness * stored, 0.0)
 
     def folded(self, response: Response) -> Array:
         """By what share of their length the ends of struts come nearer by bending aside, (rods,)."""
-        beyond = -response.elastic_force - np.where(self.struts, self.buckling_load, np.inf)
+        beyond: Array = -of_axes(response.elastic_force) - np.where(self.struts, self.buckling_load, np.inf)
         return np.maximum(beyond, 0.0) / self.stiffness
 
     @property
@@ -411,6 +463,59 @@ class Structure:
             rate += (response.bent.bowed * self.slope_rates(field, response)).sum(axis=1)
         return rate
 
+    def rates(self, vector: Array, response: Response, soft: Flags, share: float = 0.0) -> Array:
+        """Rates of elongation of the axes when unknowns change at this rate, and the share of the distributed forces.
+
+        Where ends yield, (rods, 3), with the rates at which those that are soft turn in their hinges, and of others the
+        moment over `own_stiffness`.
+        """
+        rate = self.elongation_rate(vector, response)
+        if soft.ndim == 1 or self.bending is None or response.bent is None:
+            return rate
+        field, (chord, slopes) = self.spread(vector), self._chord_rows(response)
+        ends = np.concatenate([field[self.ends[:, 0]], field[self.ends[:, 1]]], axis=1)
+        hessian = self._hessian(response, soft)
+        moment = (hessian[:, 2:] @ np.concatenate([chord, slopes], axis=1) @ ends[:, :, None])[:, :, 0]
+        moment += share * self.bending.carried(response.bent, response.axis, response.length, False)[0]
+        turned = flows(hessian[:, 2:, 2:], moment, soft[:, 1:])
+        moment = moment - (hessian[:, 2:, 2:] @ turned[:, :, None])[:, :, 0]
+        own = self.own_stiffness[:, 1:]
+        held = np.divide(moment, own, out=np.zeros_like(moment), where=own > 0.0)
+        rate = rate - (response.bent.bowed * turned).sum(axis=1)
+        return np.column_stack([rate, np.where(soft[:, 1:], turned, held)])
+
+    def deformation_rates(self, vector: Array, response: Response) -> Array:
+        """Rates of what `Response.deformation` is, when the unknowns change at this rate."""
+        rate = self.elongation_rate(vector, response)
+        if response.flowing.ndim == 1:
+            return rate
+        return np.column_stack([rate, self.slope_rates(self.spread(vector), response)])
+
+    def _chord_rows(self, response: Response) -> tuple[Array, Array]:
+        """Elongation and turning of the chord, and the slopes, of the coordinates of both ends, (rods, 2, 6) each."""
+        slopes = self._slopes_by_ends(response)
+        chord = np.zeros_like(slopes)
+        chord[:, 0, :2], chord[:, 0, 3:5] = -response.axis, response.axis
+        chord[:, 1], chord[:, 1, 2::3] = -slopes[:, 0], 0.0
+        return chord, np.where(self._rigid_ends[:, :, None], slopes, 0.0)
+
+    def efforts(self, response: Response, parts: Flags, slack: Flags) -> tuple[Array, Array]:
+        """What these of all that can yield, (rods, 3), of which nothing flows, have of forces by the unknowns (k, N), and by
+        the deformations of each other (k, k)."""
+        chord, slopes = self._chord_rows(response)
+        hessian = self._hessian(response, slack)
+        by_ends = hessian[:, [0, 2, 3]] @ np.concatenate([chord, slopes], axis=1)
+        rod, part = np.nonzero(parts)
+        matrix = np.zeros((len(rod), *self.unknown.shape))
+        of_ends = self._by_supports(by_ends[rod, part][:, None], self.ends[rod])[:, 0].reshape(
+            -1, 2, self.width
+        )
+        for end in range(2):
+            matrix[np.arange(len(rod)), self.ends[rod, end]] = of_ends[:, end]
+        place = np.array([0, 2, 3])[part]
+        together = np.where(rod[:, None] == rod, hessian[rod[:, None], place[:, None], place], 0.0)
+        return matrix.reshape(len(rod), -1)[:, self.index], together
+
     def slope_rates(self, field: Array, response: Response) -> Array:
         """Rates of the slopes of the rods' ends, (rods, 2), when all particles move at these rates."""
         assert self.bending is not None
@@ -472,28 +577,34 @@ class Structure:
         rigid = np.zeros(len(self.ends), dtype=bool)
         return self._turned(self.tangents(self.unmoved, rigid, geometric=False))
 
-    def respond(self, displacement: Array, plastic_strain: Array, share: float = 0.0) -> Response:
+    def respond(
+        self, displacement: Array, plastic_strain: Array, share: float = 0.0, piece: Piece | None = None
+    ) -> Response:
         """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p.
 
-        share: of the distributed forces that acts between the ends.
+        share: of the distributed forces that acts between the ends. piece: of the laws, where ends yield, as if it went on
+        for ever; None: by their laws.
         """
         rest()
         change = self.relative(displacement)
         stretch, axis, length = self._stretch(change)
-        elongation = stretch + self.misfit
+        plastic_strain = self.yielding_parts(plastic_strain)
+        elongation, permanent, turned = stretch + self.misfit, of_axes(plastic_strain), None
         if self.bending is not None:
-            turned = self.turns(displacement) - self.chords(displacement)[:, None]
-            slopes = np.where(self.bending.rigid, turned, 0.0)
+            slopes = self.turns(displacement) - self.chords(displacement)[:, None]
+            slopes = np.where(self.bending.rigid, slopes, 0.0)
+            if self.ends_yield:
+                slopes = slopes - plastic_strain[:, 1:]
+                turned, flows_there = self._turned_in_hinges(elongation, slopes, axis, permanent, share, piece)
+                slopes = slopes - turned
             elongation = elongation + self.bending.bow(slopes)[1]
         strain = elongation / self.rest_length
-        elastic = self.stiffness * (strain - plastic_strain)
-        slack, given = self.sense * (elastic - self._edge) < 0.0, self.given_way(elastic)
-        force = np.where(slack, given, np.clip(elastic, -self.compression_limit, self.tension_limit))
+        elastic, slack, force = self._pull(strain, permanent, piece)
         flowing = (force != elastic) & ~slack
         bent = None
         if self.bending is not None:
             bent = self.bending.bent(slopes, force, axis, length, share, couples=not self.first_order)
-        return Response(
+        found = Response(
             elongation=elongation,
             strain=strain,
             length=length,
@@ -501,15 +612,123 @@ class Structure:
             elastic_force=elastic,
             axial_force=force,
             plastic_strain=np.where(
-                flowing, strain - force / np.where(flowing, self.stiffness, 1.0), plastic_strain
+                flowing, strain - force / np.where(flowing, self.stiffness, 1.0), permanent
             ),
             flowing=flowing,
             slack=slack,
-            round_off=self._round_off_of_forces(displacement, plastic_strain, bent),
+            round_off=self._round_off_of_forces(displacement, permanent, bent),
             bent=bent,
             share=share,
             spring_force=self._pull_of_springs(displacement) if self.is_sprung else 0.0,
         )
+        return found if turned is None else self._with_ends(found, plastic_strain[:, 1:], turned, flows_there)
+
+    def _pull(self, strain: Array, permanent: Array, piece: Piece | None) -> tuple[Array, Flags, Array]:
+        """Axial forces as if no rod yielded, which are slack, and axial forces."""
+        elastic = self.stiffness * (strain - permanent)
+        if piece is not None:
+            slack, firm = piece.slack[:, 0], np.where(piece.flowing[:, 0], piece.edge[:, 0], elastic)
+        else:
+            slack = self.sense * (elastic - self._edge) < 0.0
+            firm = np.clip(elastic, -self.compression_limit, self.tension_limit)
+        return elastic, slack, np.where(slack, self.given_way(elastic), firm)
+
+    # --- plastic hinges ------------------------------------------------------------------------------
+
+    def yielding_parts(self, permanent: Array) -> Array:
+        """What is permanent in all that can yield, of that of rods (rods,) or also of their ends, (rods, 3)."""
+        if not self.ends_yield:
+            return of_axes(permanent)
+        return permanent if permanent.ndim > 1 else np.pad(permanent[:, None], ((0, 0), (0, 2)))
+
+    @cached_property
+    def own_stiffness(self) -> Array:
+        """Of all that can yield, the force by its own deformation: EA/L₀ (rods,), where ends yield (rods, 3)."""
+        along = self.stiffness / self.rest_length
+        if self.bending is None or not self.ends_yield:
+            return along
+        return np.column_stack([along, self.bending.end_stiffness[:, ::2]])
+
+    def _turned_in_hinges(
+        self, stretch: Array, slopes: Array, axis: Array, permanent: Array, share: float, piece: Piece | None
+    ) -> tuple[Array, Flags]:
+        """By how much ends turn in plastic hinges, (rods, 2), and which do; slopes: if none did.
+
+        stretch: of the chords, with misfit. The axial force of a rod whose ends flow follows from its bow, and this from the
+        force: Newton's method, within what it has found the answer to be between.
+        """
+        bending = self.bending
+        assert bending is not None
+        turned, flowing = np.zeros_like(slopes), np.zeros(slopes.shape, dtype=bool)
+        if piece is not None:
+            flowing, edge = piece.flowing[:, 1:], piece.edge[:, 1:]
+        elastic, _, axial = self._pull((stretch + bending.bow(slopes)[1]) / self.rest_length, permanent, piece)
+        low, high = np.full_like(axial, -np.inf), np.full_like(axial, np.inf)
+        for _ in range(MOST_ITERATIONS):
+            moment = bending.end_moments(slopes, axial, axis, share)
+            stiffness = bending.by_slopes(axial)
+            if piece is None:
+                sense = yielding(stiffness, moment, bending.moment_limit)
+                flowing, edge = sense != 0.0, at_limits(sense, bending.moment_limit)
+            if not flowing.any():
+                break
+            turned = flows(stiffness, moment - edge, flowing)
+            if not bending.bowing.any():
+                break
+            bowed, bow = bending.bow(slopes - turned)
+            elastic, _, pulled = self._pull((stretch + bow) / self.rest_length, permanent, piece)
+            along = np.where(pulled == elastic, self.stiffness / self.rest_length, 0.0)
+            miss = axial - pulled
+            low, high = np.where(miss < 0.0, axial, low), np.where(miss > 0.0, axial, high)
+            step = miss / (1.0 + along * (bowed * flows(stiffness, bowed, flowing)).sum(axis=1))
+            if (np.abs(step) <= 4.0 * ROUND_OFF * (np.abs(axial) + along * (np.abs(stretch) + bow))).all():
+                break
+            following = axial - step
+            beyond = (step != 0.0) & ~((following > low) & (following < high)) & np.isfinite(high - low)
+            axial = following
+            axial[beyond] = 0.5 * (low[beyond] + high[beyond])
+        return turned, flowing
+
+    def _with_ends(self, found: Response, permanent: Array, turned: Array, flowing: Flags) -> Response:
+        """A response of rods, with what can yield of their ends beside."""
+        assert self.bending is not None
+        assert found.bent is not None
+        moment, own = found.bent.moment, self.bending.end_stiffness[:, ::2]
+        none = np.zeros_like(flowing)
+        size = np.abs(found.bent.slopes + turned) + np.abs(permanent)
+        size += (largest(found.bent.slopes) + largest(permanent)) * (own > 0.0)
+        noise = 4.0 * ROUND_OFF * (own * size + np.abs(moment))
+        noise += UNBALANCED * self.largest_force(found) * self.rest_length[:, None]
+        untied = self.untied(flowing, np.abs(turned))
+        return replace(
+            found,
+            tied=np.column_stack([none[:, 0], flowing & ~untied]),
+            elastic_force=np.column_stack([found.elastic_force, moment + own * turned]),
+            plastic_strain=np.column_stack([found.plastic_strain, permanent + turned]),
+            flowing=np.column_stack([found.flowing, untied]),
+            slack=np.column_stack([found.slack, none]),
+            round_off=np.column_stack([found.round_off, noise]),
+        )
+
+    def untied(self, flowing: Flags, turned: Array) -> Flags:
+        """Ends that flow (rods, 2), less, at each joint where all do, the one that turns least in its hinge.
+
+        If all did, nothing would hold the joint; which of them turn how much is not determined, but their sum.
+        """
+        if not flowing.any():
+            return flowing
+        flowing, ends = flowing.copy(), self.ends
+        for joint in np.unique(ends[flowing]).tolist():
+            here = (ends == joint) & self._rigid_ends
+            if self.unknown[joint, 2] and not self.springs[joint, 2] and flowing[here].all():
+                rows = np.argwhere(here)
+                flowing[tuple(rows[turned[here].argmin()])] = False
+        return flowing
+
+    @cached_property
+    def _rigid_ends(self) -> Flags:
+        assert self.bending is not None
+        return self.bending.rigid
 
     def _pull_of_springs(self, displacement: Array) -> Array:
         return self.along_axes(self.springs * self.along_supports(displacement))
@@ -589,14 +808,36 @@ class Structure:
         shear = moment.sum(axis=1) / np.where(response.length > 0.0, response.length, np.inf)
         return self._sheared(response, pull, moment, shear)
 
-    def carried(self, response: Response) -> Array:
-        """What the whole distributed forces would add to the particles' forces, besides halves of them on both ends."""
+    def carried(self, response: Response, soft: Flags | None = None) -> Array:
+        """What the whole distributed forces would add to the particles' forces, besides halves of them on both ends.
+
+        soft: what flows meanwhile, where ends yield.
+        """
         if self.bending is None or response.bent is None:
             return np.zeros(self.unknown.shape)
-        moment, shear = self.bending.carried(
-            response.bent, response.axis, response.length, not self.first_order
-        )
-        return -self._sheared(response, 0.0, moment, shear)
+        bent, pull = response.bent, np.zeros_like(response.axis)
+        moment, shear = self.bending.carried(bent, response.axis, response.length, not self.first_order)
+        if soft is not None and soft.ndim > 1 and soft[:, 1:].any():
+            hessian = self._hessian(response, soft)
+            turned = flows(hessian[:, 2:, 2:], moment, soft[:, 1:])
+            lost = (hessian[:, :, 2:] @ turned[:, :, None])[:, :, 0]
+            moment, pull = moment - lost[:, 2:], -lost[:, :1] * response.axis
+            inverse = 1.0 / np.where(response.length > 0.0, response.length, np.inf)
+            shear = shear - (lost[:, 2:].sum(axis=1) - lost[:, 1]) * inverse
+        return -self._sheared(response, pull, moment, shear)
+
+    def _hessian(self, response: Response, soft: Flags) -> Array:
+        """d² of the potential of rods by elongation and turning of the chord, and both slopes, (rods, 4, 4)."""
+        assert self.bending is not None
+        assert response.bent is not None
+        along = self._along(response, soft)
+        return self.bending.hessian(response.bent, along, response.axial_force, not self.first_order)
+
+    def _along(self, response: Response, soft: Flags) -> Array:
+        """EA/L₀, of soft rods none, or what is left of it, (rods,)."""
+        left = self.softening * (of_axes(response.elastic_force) < 0.0)
+        along: Array = np.where(of_axes(soft), left, 1.0) * (self.stiffness / self.rest_length)
+        return along
 
     def _sheared(self, response: Response, pull: Array | float, moment: Array, shear: Array) -> Array:
         left = np.column_stack([-response.axis[:, 1], response.axis[:, 0]])
@@ -614,26 +855,38 @@ class Structure:
             field[:, 2] = np.bincount(self.ends.ravel(), moment.ravel(), count)
         return field
 
+    @cached_property
+    def _limits(self) -> tuple[Array, Array]:
+        """The least and the greatest force of all that can yield, (rods,), where ends yield (rods, 3)."""
+        low, high = -self.compression_limit, self.tension_limit
+        if self.bending is None or not self.ends_yield:
+            return low, high
+        limit = self.bending.moment_limit
+        return np.column_stack([low, -limit]), np.column_stack([high, limit])
+
     def at_limit(self, response: Response) -> Flags:
-        """Rods whose axial force is at a strength."""
-        force, tension, compression = response.axial_force, self.tension_limit, self.compression_limit
-        pulled = np.isfinite(tension) & (force >= tension * (1.0 - AT_LIMIT) - response.round_off)
-        pressed = np.isfinite(compression) & (force <= response.round_off - compression * (1.0 - AT_LIMIT))
+        """Rods whose axial force is at a strength; where ends yield, (rods, 3), and those at plastic moments."""
+        force, (low, high) = response.force, self._limits
+        pulled = np.isfinite(high) & (force >= high * (1.0 - AT_LIMIT) - response.round_off)
+        pressed = np.isfinite(low) & (force <= response.round_off + low * (1.0 - AT_LIMIT))
         return pulled | pressed
 
     def branches(self, response: Response, scale: float) -> Branches:
         """The pieces of their laws that the rods are on; forces (kN) below AT_LIMIT × scale count as 0."""
         nothing, edge = AT_LIMIT * scale + response.round_off, self._edge
-        verge = (self.sense != 0.0) & (np.abs(response.elastic_force - edge) <= nothing)
+        sense, (low, high) = self.sense, self._limits
+        if response.flowing.ndim > 1:
+            sense, edge = (values[:, None] * [1.0, 0.0, 0.0] for values in (sense, edge))
+        verge = (sense != 0.0) & (np.abs(response.elastic_force - edge) <= nothing)
         slack = response.slack & ~verge
-        low = np.where(self.sense > 0.0, edge, -self.compression_limit)
-        high = np.where(self.sense < 0.0, 0.0, self.tension_limit)
-        outward = np.where(self.at_limit(response), np.sign(response.axial_force), 0.0)
+        low = np.where(sense > 0.0, edge, low)
+        high = np.where(sense < 0.0, 0.0, high)
+        outward = np.where(self.at_limit(response), np.sign(response.force), 0.0)
         return Branches(
-            force=np.where(slack, response.elastic_force, response.axial_force),
-            low=np.where(slack, np.where(self.sense > 0.0, -np.inf, 0.0), low),
-            high=np.where(slack, np.where(self.sense > 0.0, edge, np.inf), high),
-            outward=np.where(verge, -self.sense, outward),
+            force=np.where(slack, response.elastic_force, response.force),
+            low=np.where(slack, np.where(sense > 0.0, -np.inf, 0.0), low),
+            high=np.where(slack, np.where(sense > 0.0, edge, np.inf), high),
+            outward=np.where(verge, -sense, outward),
             slack=slack,
             verge=verge,
         )
@@ -667,8 +920,7 @@ class Structure:
 
         EA/L₀ a aᵀ (of soft rods none, or what is left of it) + N/L (1 − a aᵀ), and what bending adds.
         """
-        left = self.softening * (response.elastic_force < 0.0)
-        along = np.where(soft, left, 1.0) * (self.stiffness / self.rest_length)
+        along = self._along(response, soft)
         across = np.zeros_like(along)
         geometric = geometric and not self.first_order
         if geometric:
@@ -682,8 +934,9 @@ class Structure:
         parts = signs[None, :, None, :, None] * block[:, None, :, None, :]
         if self.bending is not None and response.bent is not None:
             bars = parts
+            flowing = soft[:, 1:] if soft.ndim > 1 else None
             parts = self.bending.stiffness(
-                response.bent, along, response.axial_force, a, response.length, geometric
+                response.bent, along, response.axial_force, a, response.length, geometric, flowing
             ).reshape(-1, 2, 3, 2, 3)
             parts[:, :, :2, :, :2] += bars
         return parts

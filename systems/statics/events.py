@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -17,10 +18,11 @@ RESTS = 1e-9  # of the largest motion: a smaller one counts as none
 class Event:
     """One event on the way to a load factor.
 
-    kind: "yield", "slack", "taut", "plastic mechanism", "snap-through", "bifurcation", "collapse", "mechanism",
+    kind: "yield", "hinge", "slack", "taut", "plastic mechanism", "snap-through", "bifurcation", "collapse", "mechanism",
         "free body" or "note"; "overshoot" or "other equilibrium" of a simulation compared with statics.
     load_factor: that of the event. rods: names of the rods concerned.
     motion: of all particles, (n, 2), where members bend with rotations (n, 3), the largest 1; None if nothing moves.
+    place: of a plastic hinge, by name its "particle", "rod" and "end" ("start", "end"); else empty.
     """
 
     kind: str
@@ -28,6 +30,7 @@ class Event:
     message: str
     rods: tuple[str, ...] = ()
     motion: NDArray[np.float64] | None = None
+    place: Mapping[str, str] = field(default_factory=dict)
 
     def record(self, model: Model) -> dict[str, Any]:
         """It as plain data; its motion as {name: [x, y]}, or [x, y, rotation], of the particles that take part."""
@@ -36,6 +39,7 @@ class Event:
             "load_factor": self.load_factor,
             "message": self.message,
             "rods": list(self.rods),
+            **self.place,
         }
         if self.motion is not None:
             names = model.particles.names

@@ -10,7 +10,7 @@ from pinjoint.components import language, written
 from pinjoint.components.language import begun, joined, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.wording import cut
-from pinjoint.systems.statics.equations import TURNS_ONLY, Array, Flags, Rows, largest
+from pinjoint.systems.statics.equations import TURNS_ONLY, Array, Flags, Rows, largest, of_axes
 
 NAMED = 5  # at most so many by name, then "and 7 more"
 DIRECTIONS = 3  # at most so many, then "and 7 more"
@@ -40,7 +40,7 @@ def rod_names(model: Model, rows: Rows) -> str:
 def slack_named(model: Model, slack: Flags) -> str:
     """Sentences that name the slack cables, and the struts that have buckled; "" if there are none."""
     struts = np.isfinite(model.rods.buckling_load)
-    slack = slack[: len(struts)]
+    slack = of_axes(slack)[: len(struts)]
     cables, buckled = np.flatnonzero(slack & ~struts), np.flatnonzero(slack & struts)
     said = []
     if len(cables):
@@ -62,6 +62,16 @@ def slack_named(model: Model, slack: Flags) -> str:
             )
         ]
     return joined(said)
+
+
+def hinges_named(model: Model, flowing: Flags) -> str:
+    """Where plastic hinges turn, as in "at B and C", and which rods yield along their axes; "" if no end flows."""
+    if flowing.ndim == 1 or not flowing[:, 1:].any():
+        return ""
+    joints = np.unique(model.rods.between[flowing[: model.rods.count, 1:]])
+    where = tr("at {particles}", particles=listed([str(model.particles.names[row]) for row in joints.tolist()]))
+    rows = np.flatnonzero(of_axes(flowing))
+    return tr("{hinges} while {rods} yields", hinges=where, rods=rod_names(model, rows)) if len(rows) else where
 
 
 def divide_named(model: Model, rows: Rows, parts: Rows) -> str:

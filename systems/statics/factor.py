@@ -136,9 +136,12 @@ def is_held(model: Model, *, at_first: bool = False) -> bool:
     particles, rods = model.particles, model.rods
     structure = replace(Structure.of(model).with_translations(), sparse=False)
     place = structure.field(particles.displacement, particles.rotation)
-    response = structure.respond(place, rods.plastic_strain, 1.0)
+    response = structure.respond(place, np.column_stack([rods.plastic_strain, rods.plastic_rotation]), 1.0)
     soft = rods.yielding | (rods.tension_only & (rods.axial_force <= 0.0))
     soft = soft | (rods.axial_force < -rods.buckling_load)
+    if structure.ends_yield:
+        hinges = structure.untied(rods.hinge_yielding, np.abs(rods.plastic_rotation))
+        soft = np.column_stack([soft, hinges])
     tangent = structure.tangent(response, soft & (not at_first), geometric=not at_first)
     share = HELD if structure.bending is None else SOFT  # long members bend a million times more easily
     try:

@@ -20,9 +20,11 @@ from pinjoint.systems.statics.equations import (
     Array,
     Branches,
     Flags,
+    Piece,
     Response,
     Structure,
     largest,
+    of_axes,
 )
 from pinjoint.systems.statics.factor import Factor, regular
 
@@ -52,12 +54,13 @@ ACTIVE_SET_ROUNDS = 12
 WAYS = (
     1e-12  # weight of ways beside elongations, in energy, where directions are compared: ways decide below 1e-6
 )
+TIED = 1e-8  # of the same where ends yield, of which those at one joint may change their moments by round-off alone
 INDIFFERENT = 1e-11  # of the largest rate of elongation: a smaller one is round-off
 
 
 @dataclass(frozen=True)
 class Point:
-    """A state on a path: displacement (n, 2), plastic strain (rods,), t, and the rods' response.
+    """A state on a path: displacement (n, 2), plastic strain (rods,), as of `Response`, t, and the rods' response.
 
     dissipated: energy (J) that yielding has dissipated so far.
     """
@@ -97,13 +100,13 @@ class Tangent:
 
 @dataclass(frozen=True)
 class Change:
-    """From one point to the next: moved, of the unknowns (N,); elongation, of the rods (rods,), in m.
+    """From one point to the next: moved, of the unknowns (N,); deformation, as of `Response`.
 
     The latter is not what the former makes to first order, which takes the turning of long rods for more.
     """
 
     moved: Array
-    elongation: Array
+    deformation: Array
 
 
 @dataclass(frozen=True)
@@ -153,19 +156,22 @@ class Path:
         first, last = self.shares
         return last if t == 1.0 else first + t * (last - first)
 
-    def push(self, response: Response) -> Array:
-        """The change of the load on the unknowns with t; distributed forces act on the bent axes."""
+    def push(self, response: Response, soft: Flags | None = None) -> Array:
+        """The change of the load on the unknowns with t; distributed forces act on the bent axes, of which ends may flow."""
         first, last = self.shares
         if first == last or response.bent is None:
             return self._dead_push
-        return self._dead_push + (last - first) * self.structure.gather(self.structure.carried(response))
+        return self._dead_push + (last - first) * self.structure.gather(self.structure.carried(response, soft))
 
-    def respond(self, displacement: Array, plastic_strain: Array, t: float) -> Response:
-        """The rods at these displacements, and under what acts between their ends at t."""
-        return self.structure.respond(displacement, plastic_strain, self.share(t))
+    def respond(
+        self, displacement: Array, plastic_strain: Array, t: float, piece: Piece | None = None
+    ) -> Response:
+        """The rods at these displacements, and under what acts between their ends at t; piece: as of `Structure`."""
+        return self.structure.respond(displacement, plastic_strain, self.share(t), piece)
 
     def start(self, displacement: Array, plastic_strain: Array) -> Point:
         """The point at t = 0 in this state; rods beyond a strength yield at once."""
+        plastic_strain = self.structure.yielding_parts(plastic_strain)
         response = self.respond(displacement, plastic_strain, 0.0)
         if response.flowing.any():
             response = self.respond(displacement, response.plastic_strain, 0.0)
@@ -174,8 +180,10 @@ class Path:
     def after(self, start: Point, displacement: Array, t: float) -> Point:
         """The point with these displacements and t, yielding from an earlier one."""
         response = self.respond(displacement, start.plastic_strain, t)
-        spent = np.abs(response.axial_force * (response.plastic_strain - start.plastic_strain))
-        dissipated = start.dissipated + 1000.0 * float(spent @ self.structure.rest_length)
+        spent = np.abs(response.force * (response.plastic_strain - start.plastic_strain))
+        dissipated = start.dissipated + 1000.0 * float(of_axes(spent) @ self.structure.rest_length)
+        if spent.ndim > 1:
+            dissipated += 1000.0 * float(spent[:, 1:].sum())
         return Point(displacement, response.plastic_strain, t, response, dissipated)
 
     def branches(self, response: Response) -> Branches:
@@ -208,7 +216,7 @@ class Path:
     def _change(self, last: Point, point: Point) -> Change:
         """From one point to the next."""
         moved = self.structure.gather(point.displacement - last.displacement)
-        return Change(moved, point.response.elongation - last.response.elongation)
+        return Change(moved, point.response.deformation - last.response.deformation)
 
     def _onward_tangent(self, response: Response, branches: Branches, guess: Flags, onward: Change) -> Tangent:
         """Of all directions, with a growing or a falling load, the one most like the last."""
@@ -220,8 +228,7 @@ class Path:
         )
         for sense in (1.0, -1.0):
             for chosen in yielding_sets(matrix, sense * elastic.sense * growth, guess[limited]):
-                giving = np.zeros_like(guess)
-                giving[limited] = chosen
+                giving = self._giving(limited, matrix, sense * elastic.sense * growth, chosen)
                 found = replace(self._direction(response, branches, giving, onward), sense=sense)
                 like = sense * self._likeness(response, branches, found.rate, onward)
                 if like > likeness and self._agrees(response, branches, found):
@@ -234,10 +241,11 @@ class Path:
 
         The former tells yielding from unloading, which may turn the ways back.
         """
-        elongation = self.structure.elongation_rate(rate, response)
-        elastic = np.where(branches.slack, 0.0, self.structure.stiffness / self.structure.rest_length)
+        deformation = self.structure.deformation_rates(rate, response)
+        elastic = np.where(branches.slack, 0.0, self.structure.own_stiffness).ravel()
         weight = np.concatenate([elastic, WAYS * self.structure.weight])
-        one, other = np.concatenate([elongation, rate]), np.concatenate([onward.elongation, onward.moved])
+        one = np.concatenate([deformation.ravel(), rate])
+        other = np.concatenate([onward.deformation.ravel(), onward.moved])
         size = math.sqrt(float(weight @ one**2) * float(weight @ other**2))
         return float(weight @ (one * other)) / size if size > 0.0 else 0.0
 
@@ -252,13 +260,20 @@ class Path:
         if not (growth > 0.0).any():
             return elastic
         if not self.exact_events:
-            return self._soften_by_trial(response, branches, growth > 0.0, onward)
+            return self._soften_by_trial(response, branches, self._untied(growth > 0.0, growth), onward)
         limited, matrix, excess = self._limits(response, branches, elastic)
         chosen = yielding_set(matrix, excess, guess[limited])
         if chosen is not None:
-            limited[limited] = chosen
-            return self._direction(response, branches, limited, onward)
-        return replace(self._direction(response, branches, growth > 0.0, onward), consistent=False)
+            giving = self._giving(limited, matrix, excess, chosen)
+            found = self._direction(response, branches, giving, onward)
+            if giving.ndim > 1 and not self._agrees(
+                response, branches, found
+            ):  # all ends at some joint have to
+                limited[limited] = chosen
+                found = self._direction(response, branches, limited, onward)
+            return found
+        grows = self._untied(growth > 0.0, np.where(guess, np.inf, growth))
+        return replace(self._direction(response, branches, grows, onward), consistent=False)
 
     def _direction(
         self, response: Response, branches: Branches, giving: Flags, onward: Change | None
@@ -267,7 +282,8 @@ class Path:
         structure = self.structure
         flowing, slack = giving & ~branches.verge, branches.slack | (giving & branches.verge)
         factor = regular(structure.tangent(response, flowing | slack), structure.weight)
-        rate = factor.solve(self.push(response)) if factor.exists else np.zeros(structure.size)
+        push = self.push(response, flowing)
+        rate = factor.solve(push) if factor.exists else np.zeros(structure.size)
         forward = onward is None or self._goes_on(response, branches, factor, rate, onward)
         return Tangent(rate, flowing, slack, factor, 1.0 if forward else -1.0)
 
@@ -282,15 +298,20 @@ class Path:
 
     def _growth(self, response: Response, branches: Branches, tangent: Tangent) -> Array:
         """Rates at which rods at the end of a piece elongate outward along the path."""
-        rate = self.structure.elongation_rate(tangent.sense * tangent.rate, response)
-        return rate * branches.outward
+        return self._rates(response, tangent) * branches.outward
+
+    def _rates(self, response: Response, tangent: Tangent, dt: float | None = None) -> Array:
+        """What `Structure.rates` tells of a direction, per t or in dt."""
+        dt, (first, last) = tangent.sense if dt is None else dt, self.shares
+        return self.structure.rates(dt * tangent.rate, response, tangent.soft, dt * (last - first))
 
     def _agrees(self, response: Response, branches: Branches, tangent: Tangent) -> bool:
         """True if exactly those rods at the end of a piece give way that go on outward."""
-        rate = self.structure.elongation_rate(tangent.sense * tangent.rate, response)
+        rate = self._rates(response, tangent)
         growth = rate * branches.outward
         wrong = (growth > 0.0) != (tangent.soft & ~branches.slack)
-        return tangent.factor.exists and not (np.abs(growth[wrong]) > INDIFFERENT * largest(rate)).any()
+        share = INDIFFERENT if rate.ndim == 1 else TIED
+        return tangent.factor.exists and not (np.abs(growth[wrong]) > share * largest(rate)).any()
 
     def _limits(self, response: Response, branches: Branches, elastic: Tangent) -> tuple[Flags, Array, Array]:
         """The rods at the end of a piece, and the matrix and growth of their complementarity problem.
@@ -300,14 +321,38 @@ class Path:
         structure = self.structure
         limited: Flags = branches.outward != 0.0
         sign = branches.outward[limited]
-        stiffness = (structure.stiffness / structure.rest_length)[limited]
+        stiffness = structure.own_stiffness[limited]
+        growth = stiffness * self._growth(response, branches, elastic)[limited]
+        left = np.zeros(limited.shape)
+        of_axes(left)[...] = structure.softening * of_axes(branches.verge)
+        hardened = stiffness / (1.0 - left[limited])  # of what softens, with what is left of its stiffness
+        if limited.ndim > 1:
+            efforts, together = structure.efforts(response, limited, elastic.soft)
+            held = efforts @ elastic.factor.solve(np.ascontiguousarray(efforts.T))
+            more = hardened - (1.0 - TIED) * stiffness
+            matrix = sign[:, None] * (together - held) * sign + np.diag(more)
+            return limited, 0.5 * (matrix + matrix.T), growth
         pull = structure.elongations(response, np.flatnonzero(limited)) * sign[:, None]
         softening = pull @ elastic.factor.solve(np.ascontiguousarray(pull.T))
-        left = structure.softening[limited] * branches.verge[limited]
-        hardened = stiffness / (1.0 - left)  # of what softens, with what is left of its stiffness
         matrix = np.diag(hardened) - stiffness[:, None] * softening * stiffness
-        growth = stiffness * self._growth(response, branches, elastic)[limited]
         return limited, 0.5 * (matrix + matrix.T), growth
+
+    def _giving(self, limited: Flags, matrix: Array, growth: Array, chosen: Flags) -> Flags:
+        """Of all that can yield, these of those at the end of a piece; of ends at one joint not all, if that is enough.
+
+        matrix, growth: of the complementarity problem that `chosen` solves.
+        """
+        giving, turned = np.zeros_like(limited), np.zeros(limited.shape)
+        giving[limited] = chosen
+        if giving.ndim > 1:
+            turned[giving] = np.linalg.solve(matrix[np.ix_(chosen, chosen)], growth[chosen])
+        return self._untied(giving, turned)
+
+    def _untied(self, giving: Flags, turned: Array) -> Flags:
+        """What gives way, where ends yield as by `Structure.untied`; turned: by how much."""
+        if giving.ndim == 1:
+            return giving
+        return np.column_stack([giving[:, 0], self.structure.untied(giving[:, 1:], turned[:, 1:])])
 
     def _soften_by_trial(
         self, response: Response, branches: Branches, soft: Flags, onward: Change | None
@@ -315,7 +360,8 @@ class Path:
         """The tangent by fixed-point iteration of the set of rods that give way: large structures, limit points."""
         for _ in range(ACTIVE_SET_ROUNDS):
             found = self._direction(response, branches, soft, onward)
-            grows = self._growth(response, branches, found) > 0.0
+            growth = self._growth(response, branches, found)
+            grows = self._untied(growth > 0.0, growth)
             if np.array_equal(grows, soft):
                 break
             soft = grows
@@ -435,9 +481,11 @@ class Path:
         displacement, step = guess, np.zeros_like(guess)
         before, dt, share, soft = math.inf, 0.0, 1.0, None
         for iteration in range(NEWTON_ITERATIONS):
-            response = self.respond(displacement, start.plastic_strain, t)
-            if piece is not None:
-                response = self._on_piece(start, piece, response)
+            response = (
+                self.respond(displacement, start.plastic_strain, t)
+                if piece is None
+                else self._on_piece(start, piece, displacement, t)
+            )
             residual = structure.gather(self.load(t) - structure.internal(response))
             size, scale = structure.greatest(residual), self.largest_force(response)
             if not size <= 1e6 * scale:
@@ -487,7 +535,7 @@ class Path:
             return None
         if normal is None:
             return factor.solve(residual), 0.0
-        solved = factor.solve(np.column_stack([residual, self.push(response)]))
+        solved = factor.solve(np.column_stack([residual, self.push(response, response.flowing)]))
         dt = -float(normal @ solved[:, 0]) / (float(normal @ solved[:, 1]) + 1.0)
         return solved[:, 0] + dt * solved[:, 1], dt
 
@@ -515,8 +563,8 @@ class Path:
         if not self.exact_events:
             return math.inf
         structure, branches = self.structure, self.branches(point.response)
-        rate = structure.elongation_rate(tangent.sense * tangent.rate, point.response)
-        growth = rate * structure.stiffness / structure.rest_length
+        rate = self._rates(point.response, tangent)
+        growth = rate * structure.own_stiffness
         with np.errstate(divide="ignore", invalid="ignore"):
             up = (branches.high - branches.force) / growth
             down = (branches.low - branches.force) / growth
@@ -524,18 +572,22 @@ class Path:
         wait[branches.outward * growth > 0.0] = np.inf
         return float(wait.min(initial=np.inf)) * self.stretch(tangent)
 
-    def _on_piece(self, start: Point, piece: Tangent, response: Response) -> Response:
-        """A response as it were if all rods stayed on the pieces of their laws that a tangent at the start is on."""
+    def _on_piece(self, start: Point, piece: Tangent, displacement: Array, t: float) -> Response:
+        """The response as it were if all rods stayed on the pieces of their laws that a tangent at the start is on."""
         branches = self.branches(start.response)
         edge = np.where(branches.outward > 0.0, branches.high, branches.low)
+        if edge.ndim > 1:
+            of_ends = Piece(piece.flowing, piece.slack, edge)
+            return self.respond(displacement, start.plastic_strain, t, of_ends)
+        response = self.respond(displacement, start.plastic_strain, t)
         given = self.structure.given_way(response.elastic_force)
         force = np.where(piece.slack, given, np.where(piece.flowing, edge, response.elastic_force))
         return replace(response, axial_force=force, flowing=piece.flowing, slack=piece.slack)
 
     def _is_on(self, start: Point, piece: Tangent, found: Point) -> bool:
         """True if the rods at a point are on the pieces of their laws that a tangent at the start is on."""
-        response = found.response
-        difference = np.abs(response.axial_force - self._on_piece(start, piece, response).axial_force)
+        response, as_if = found.response, self._on_piece(start, piece, found.displacement, found.t)
+        difference = np.abs(response.force - as_if.force)
         return bool((difference <= 4.0 * ROUND_OFF * self.largest_force(response) + response.round_off).all())
 
     def _new_ends(self, point: Point, found: Point) -> Array:
@@ -559,9 +611,9 @@ class Path:
         force = min(self.largest_force(point.response), self.largest_force(found.response))
         size = np.where(edge == 0.0, force, np.abs(edge))
         near = AT_LIMIT * size + found.response.round_off[new]
-        stiffness = (structure.stiffness / structure.rest_length)[new]
+        stiffness = structure.own_stiffness[new]
         margin = np.maximum(sign * (edge - branches.force[new]) - 0.5 * near, 0.0)
-        linear = sign * stiffness * structure.elongation_rate(dt * tangent.rate, point.response)[new]
+        linear = sign * stiffness * self._rates(point.response, tangent, dt)[new]
         quadratic = sign * (found.response.elastic_force - branches.force)[new] - linear
         root = np.sqrt(np.maximum(linear**2 + 4.0 * quadratic * margin, 0.0))
         share = np.where(

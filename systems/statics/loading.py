@@ -9,12 +9,12 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.model import Model
-from pinjoint.systems.statics.equations import Array, Flags, largest, normalised
+from pinjoint.systems.statics.equations import Array, Flags, largest, normalised, of_axes, of_rods
 from pinjoint.systems.statics.events import Event, NoEquilibrium
-from pinjoint.systems.statics.explain import describe_motion, moved, rod_names, slack_named
+from pinjoint.systems.statics.explain import describe_motion, hinges_named, moved, rod_names, slack_named
 from pinjoint.systems.statics.factor import NO_STIFFNESS, SOFT, is_stable, regular, softest, unresisted
 from pinjoint.systems.statics.follow import HALF, NARROWINGS, Path, Point, Tangent
-from pinjoint.systems.statics.relax import LARGEST_PLASTIC_STRAIN, RUNAWAY, STEPS, relax
+from pinjoint.systems.statics.relax import LARGEST_PLASTIC_ROTATION, RUNAWAY, STEPS, relax, torn
 
 BEYOND = 1e-6  # of the change of load, by which a jump begins beyond a loss of stability
 FIRST_LOAD = 1 / 64  # of the change of load, under which a first-order mechanism takes its shape
@@ -61,9 +61,9 @@ class Loading:
                 if tangent.flowing.any():
                     raise self._collapse(tangent.flowing, motion)
                 raise self._mechanism(motion, tangent.slack)
-            if not self.path.structure.first_order and (torn := self._torn(self.point)).any():
+            if not self.path.structure.first_order and (beyond := self._torn(self.point)).any():
                 self._narrow(*start)
-                raise self._beyond_strains(torn, self.path.structure.spread(tangent.rate))
+                raise self._beyond_strains(beyond, self.path.structure.spread(tangent.rate))
         raise self._lost()
 
     # --- the start ---------------------------------------------------------------------------------
@@ -129,7 +129,11 @@ class Loading:
 
     def _note_yields(self, tangent: Tangent, found: Point, following: Tangent) -> None:
         """Report the rods that begin to yield."""
-        new, t = (found.response.flowing | following.flowing) & ~tangent.flowing, found.t
+        new, t = of_axes((found.response.flowing | following.flowing) & ~tangent.flowing), found.t
+        if tangent.flowing.ndim > 1:
+            self._note_hinges(
+                tangent.flowing[:, 1:], found.response.flowing[:, 1:], following.flowing[:, 1:], t
+            )
         if not new.any():
             return
         force = found.response.axial_force
@@ -146,9 +150,26 @@ class Loading:
         ]
         self._tell("yield", t, joined(said), new)
 
+    def _note_hinges(self, before: Flags, meanwhile: Flags, following: Flags, t: float) -> None:
+        """Report the plastic hinges that form, (rods, 2), but not that of ends at one joint another turns instead."""
+        ends, names = self.path.structure.ends, self.model.rods.names
+        new = following & ~before & ~np.isin(ends, ends[before & ~following])
+        new |= meanwhile & ~before & ~np.isin(ends, ends[before | following])
+        for row, end in np.argwhere(new).tolist():
+            particle = self.model.particles.names[ends[row, end]]
+            message = tr(
+                "A plastic hinge forms at {particle}, in {rod}, {at}.",
+                particle=particle,
+                rod=rod_names(self.model, np.array([row])),
+                at=self._at(t),
+            )
+            place = {"particle": particle, "rod": names[row], "end": ("start", "end")[end]}
+            self.events.append(Event("hinge", self.factor(t), message, (names[row],), place=place))
+
     def _note_cables(self, tangent: Tangent) -> None:
         """Report the cables that go slack, or tighten again, and the struts that buckle, or become straight again."""
-        given, back = tangent.slack & ~self.slack, self.slack & ~tangent.slack
+        present = of_axes(tangent.slack)
+        given, back = present & ~self.slack, self.slack & ~present
         struts, t = self.path.structure.struts, self.point.t
         slack, taut, bent, straight = given & ~struts, back & ~struts, given & struts, back & struts
         for kind, rods, said in (
@@ -163,24 +184,31 @@ class Loading:
         ):
             if said:
                 self._tell(kind, t, said, rods)
-        self.slack = tangent.slack
+        self.slack = present
 
     def _note_plastic_mechanism(self, tangent: Tangent, following: Tangent) -> None:
         """Report that only the forces of the rods hold the structure, no longer their stiffness."""
         structure = self.path.structure
         if self.mechanism or not (following.flowing & ~tangent.flowing).any():
             return
-        matrix = structure.tangent(self.point.response, following.soft, geometric=False)
-        if regular(matrix, structure.weight, -SOFT).definite:
+        if not self._is_plastic_mechanism(following):
             return
         self.mechanism = True
         motion = structure.spread(following.rate)
-        message = tr(
-            "Plastic mechanism {at}, the collapse load of textbooks: so many rods yield that the others do not resist moving"
-            " {motion}. Beyond it only large changes of shape carry more.",
-            at=self._at(self.point.t),
-            motion=describe_motion(self.model, motion[None]),
-        )
+        told = {"at": self._at(self.point.t), "motion": describe_motion(self.model, motion[None])}
+        if hinges := hinges_named(self.model, following.flowing):
+            message = tr(
+                "Plastic mechanism {at}, the collapse load of textbooks: with plastic hinges {hinges} nothing resists moving"
+                " {motion}. Beyond it only large changes of shape carry more.",
+                hinges=hinges,
+                **told,
+            )
+        else:
+            message = tr(
+                "Plastic mechanism {at}, the collapse load of textbooks: so many rods yield that the others do not resist"
+                " moving {motion}. Beyond it only large changes of shape carry more.",
+                **told,
+            )
         self._tell("plastic mechanism", self.point.t, message, following.flowing, motion)
 
     # --- loss of stability -----------------------------------------------------------------------------
@@ -188,10 +216,13 @@ class Loading:
     def _jump(self, beyond: Tangent) -> Tangent:
         """Go on from the last stable point to the next stable equilibrium, and report the jump."""
         path, critical = self.path, self.point
-        if (beyond.slack & ~self.slack & path.structure.struts).any():
+        structure = path.structure
+        if (of_axes(beyond.slack) & ~self.slack & structure.struts).any():
             self._note_cables(beyond)
         plastic = bool(beyond.flowing.any()) and is_stable(path.structure, critical.response, beyond.slack)
         mode = self._mode(beyond)
+        if plastic and structure.ends_yield and self._is_plastic_mechanism(beyond):
+            raise self._collapse(beyond.flowing, structure.spread(mode))
         if self.mechanism and critical.t < FIRST_LOAD and not plastic:
             self._relax(FIRST_LOAD, mode)
         else:
@@ -202,6 +233,14 @@ class Loading:
         if self.stalls > MOST_STALLS:
             self._leap()
         return path.tangent(self.point)
+
+    def _is_plastic_mechanism(self, tangent: Tangent) -> bool:
+        """True if nothing but round-off, forces in a changing shape and their turning resists some motion: with plastic
+        hinges in the original shape, to which textbooks hold."""
+        structure = self.path.structure
+        shape = structure.unmoved if structure.ends_yield else self.point.response
+        matrix = structure.tangent(shape, tangent.soft, geometric=False)
+        return not regular(matrix, structure.weight, -SOFT).definite
 
     def _pass(self, critical: Point, beyond: Tangent, mode: Array, plastic: bool) -> None:
         """Relax under hardly more load, or under the whole load if that does not end within PASSING steps."""
@@ -231,7 +270,7 @@ class Loading:
         if beyond.factor.definite and beyond.flowing.any():
             return beyond.rate
         _, mode = softest(structure, response, beyond.soft)
-        flow = structure.elongation_rate(mode, response) * np.sign(response.axial_force) * beyond.flowing
+        flow = structure.deformation_rates(mode, response) * np.sign(response.force) * beyond.flowing
         push = self.path.push(response)
         pushed = float(mode @ push)
         lean = float(flow.sum()) if flow.any() else pushed
@@ -277,13 +316,13 @@ class Loading:
                 ),
             )
         yielded = self.point.plastic_strain != critical.plastic_strain
-        rows = np.flatnonzero(yielded)
+        rows = np.flatnonzero(of_rods(yielded))
         rods = tr("{rods} yielded on the way.", rods=begun(rod_names(self.model, rows))) if len(rows) else ""
         said = joined([tr(message, at=self._at(critical.t), where=where), rods])
         self._tell(kind, critical.t, said, yielded, self.path.structure.spread(mode))
 
     def _collapse(self, flowing: Flags, motion: Array) -> NoEquilibrium:
-        rows = np.flatnonzero(flowing)
+        rows, hinges = np.flatnonzero(of_axes(flowing)), hinges_named(self.model, flowing)
         message = plural(
             "Plastic collapse {at}: {rods} yields and nothing else resists moving {motion}. Lower the load or strengthen"
             " this rod.",
@@ -294,7 +333,15 @@ class Loading:
             rods=rod_names(self.model, rows),
             motion=describe_motion(self.model, motion[None]),
         )
-        if (flowing & self.slack).any():
+        if hinges:
+            message = tr(
+                "Plastic collapse {at}: with plastic hinges {hinges} nothing resists moving {motion} any more. Lower the"
+                " load or strengthen the members there.",
+                at=self._at(self.point.t),
+                hinges=hinges,
+                motion=describe_motion(self.model, motion[None]),
+            )
+        if (of_axes(flowing) & self.slack).any():
             message = plural(
                 "Collapse {at}: nothing resists moving {motion} while {rods} has buckled. Lower the load or stiffen"
                 " this rod.",
@@ -318,9 +365,8 @@ class Loading:
         return NoEquilibrium("collapse", message)
 
     def _torn(self, point: Point) -> Flags:
-        """Rods that have yielded by more than any metal bears."""
-        torn: Flags = np.abs(point.plastic_strain - self.begun) > LARGEST_PLASTIC_STRAIN
-        return torn
+        """Of all that can yield, what has by more than any metal bears."""
+        return torn(point.plastic_strain - self.begun)
 
     def _narrow(self, point: Point, tangent: Tangent) -> None:
         """Go from here only as far as no rod has torn."""
@@ -334,7 +380,9 @@ class Loading:
 
     def _beyond_strains(self, rods: Flags, motion: Array) -> NoEquilibrium:
         """The end of a load that is still held, but by rods that no metal could be."""
-        rows = np.flatnonzero(rods)
+        if of_axes(rods).any():
+            rods = of_axes(rods)
+        rows = np.flatnonzero(of_rods(rods))
         message = plural(
             "Beyond the load factor {factor}, {rods} yields by more than a tenth of its length, which is no result. Lower"
             " the load or strengthen this rod.",
@@ -344,6 +392,14 @@ class Loading:
             factor=written.number(self.factor(self.point.t)),
             rods=rod_names(self.model, rows),
         )
+        if rods.ndim > 1:
+            message = tr(
+                "Beyond the load factor {factor}, the plastic hinges {hinges} turn by more than {most:g} rad, which is no"
+                " result. Lower the load or strengthen the members there.",
+                factor=written.number(self.factor(self.point.t)),
+                hinges=hinges_named(self.model, rods),
+                most=LARGEST_PLASTIC_ROTATION,
+            )
         earlier = (event.message for event in self.events if event.kind == "plastic mechanism")
         message = joined([*earlier, message])
         self._tell("collapse", self.point.t, message, rods, motion)
@@ -396,7 +452,7 @@ class Loading:
     ) -> None:
         """Add an event at t that concerns these rods and moves the structure in this way."""
         names = self.model.rods.column("name")
-        concerned = () if rods is None else tuple(str(names[row]) for row in np.flatnonzero(rods))
+        concerned = () if rods is None else tuple(str(names[row]) for row in np.flatnonzero(of_rods(rods)))
         motion = None if motion is None else normalised(motion)
         self.events.append(Event(kind, self.factor(t), message, concerned, motion))
 

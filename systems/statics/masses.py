@@ -65,6 +65,7 @@ class Divided:
             end_stiffness=(rods.bending_stiffness[row] / length)[:, None] * per_slope,
             initial_slopes=rods.initial_slopes[row] / parts[row, None],
             span_load=on_joints(between.on_clamped(length), of_ends["fixity"]),
+            moment_limit=np.full((len(row), 2), np.inf),
             **of_ends,
         )
         between = particles.position[whole.ends[inner[0], 0]] + inner[1][:, None] * rods.difference[inner[0]]
@@ -103,7 +104,7 @@ class Divided:
         whole, (row, share), factor = self.whole, self.inner, state.load_factor
         assert whole.bending is not None
         place = whole.field(state.displacement, state.rotation)
-        held = whole.respond(place, state.plastic_strain, factor)
+        held = whole.respond(place, state.permanent, factor)
         assert held.bent is not None
         slopes = np.einsum("rij,rj->ri", own_slopes(whole.bending.fixity), held.bent.slopes)
         bow = cubic(*slopes.T)[row]
@@ -114,9 +115,11 @@ class Divided:
         turned = whole.chords(place)[row] + (bow[:, 1:] * np.arange(1, 4) * powers[:, :3]).sum(axis=1)
         shift = begun[:, :2] + share[:, None] * moved + aside[:, None] * left
         between = np.column_stack([shift, turned])
-        strain, force = state.plastic_strain[self.row], held.axial_force[self.row]
+        force, permanent = held.axial_force[self.row], whole.yielding_parts(state.permanent)[self.row]
+        if permanent.ndim > 1:  # only outer ends have turned in plastic hinges
+            permanent[:, 1:] *= self.structure.ends < len(place)
         place, bending = np.concatenate([place, between]), self.structure.bending
-        found = self.structure.respond(place, strain, factor)
+        found = self.structure.respond(place, permanent, factor)
         assert found.bent is not None
         assert bending is not None
         bent = bending.bent(found.bent.slopes, force, found.axis, found.length, factor, couples=True)

@@ -243,7 +243,7 @@ class _Search:
         for sign in (1.0, -1.0):
             path = Path(structure, external.at(0.0), sign * external.scaled, (0.0, sign), passes_limits=True)
             place = structure.field(unloaded.displacement, unloaded.rotation)
-            start = path.start(place, unloaded.plastic_strain)
+            start = path.start(place, unloaded.permanent)
             search = cls(path, start, sign, goal)
             rate = structure.spread(path.tangent(start).rate)
             speed = sign if goal.displaced is None else float(rate[goal.displaced])

@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from pinjoint.systems.statics.equations import Array, Structure, largest
+from pinjoint.systems.statics.equations import Array, Flags, Structure, largest
 from pinjoint.systems.statics.factor import is_stable, regular, softest
 from pinjoint.systems.statics.follow import LARGEST_MOVE, NEWTON_ITERATIONS, SMALLEST_SHARE, Path, Point
 
@@ -23,6 +23,9 @@ LARGEST_PENALTY = 1e9
 NUDGE = 1e-3  # of a rod's length: how far to push off an unstable equilibrium
 BALANCED = 1e-9  # of the largest force: what is left over in an equilibrium, be it unstable
 LARGEST_PLASTIC_STRAIN = 0.1  # gained on the way; what is beyond is no result: structural metal tears before
+LARGEST_PLASTIC_ROTATION = (
+    0.25  # rad: where what yields is as long as it is deep, its edges strain by half of that
+)
 RUNAWAY = 100.0  # times the structure's extent: a displacement without end
 ROUND_AND_ROUND = 30.0  # rad: a rotation without end
 
@@ -57,11 +60,19 @@ def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STE
             break
         point, penalty = crept
         folded = largest(structure.folded(point.response)) if structure.first_order else 0.0
-        if max(largest(point.plastic_strain - start.plastic_strain), folded) > LARGEST_PLASTIC_STRAIN:
+        if torn(point.plastic_strain - start.plastic_strain).any() or folded > LARGEST_PLASTIC_STRAIN:
             return point, "strained apart"
         if has_run_away(structure, point.displacement, start.displacement):
             return point, "ran away"
     return point, "gave up"
+
+
+def torn(gained: Array) -> Flags:
+    """Of all that can yield, what has by more than any metal bears, by the plastic strain gained; of the same shape."""
+    if gained.ndim == 1:
+        return np.abs(gained) > LARGEST_PLASTIC_STRAIN
+    most = np.array([LARGEST_PLASTIC_STRAIN, LARGEST_PLASTIC_ROTATION, LARGEST_PLASTIC_ROTATION])
+    return np.abs(gained) > most
 
 
 def has_run_away(structure: Structure, displacement: Array, start: Array) -> bool:
@@ -117,7 +128,8 @@ def implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> 
             share *= 0.5  # other rods are soft than in the tangent of the step: take less of it
             moved = moved - share * step
             continue
-        factor = regular(structure.tangent(response, response.soft), structure.weight, penalty)
+        soft = response.soft | response.tied  # joints between ends that all flow are held by the penalty
+        factor = regular(structure.tangent(response, soft), structure.weight, penalty)
         if not factor.definite:
             return None
         step = factor.solve(pull)

@@ -28,7 +28,7 @@ from pinjoint.components.theory import EXACT
 from pinjoint.components.wording import quoted
 from pinjoint.systems.statics.bending import needed_parts
 from pinjoint.systems.statics.contacts import Discs, Sinking
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
+from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised, of_axes
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import (
     describe_motion,
@@ -181,20 +181,20 @@ class _Settling:
         self.events = [Event("note", 0.0, note) for note in notes]
         self.looked_for_bodies = self.soft = False
         self.slender = np.zeros(model.rods.count, dtype=bool)
-        self.begun = start.plastic_strain
+        self.begun = permanent = self.structure.yielding_parts(start.permanent)
         at_rest = Path(self.structure, self._nothing, self._nothing)
         place = self.structure.field(start.displacement, start.rotation)
         if self.structure.first_order:
             place = self.structure.of_supports(place)
         self.supports = place
-        self.point = at_rest.start(place, start.plastic_strain)
+        self.point = at_rest.start(place, permanent)
         self.largest = self.structure.largest_force(self.point.response)
         if self.largest > 0.0 and self.structure.first_order:
             with suppress(NoEquilibrium):  # of a mechanism: under load it is told of
-                self.point = self._elastic(self._nothing, 0.0, start.plastic_strain) or self.point
-        yields = (self.point.plastic_strain != start.plastic_strain).any()
+                self.point = self._elastic(self._nothing, 0.0, permanent) or self.point
+        yields = (self.point.plastic_strain != permanent).any()
         if yields and not self.structure.gather(self.point.displacement).any():
-            self.point = self._grown(start) or self.point
+            self.point = self._grown() or self.point
         if not self.structure.first_order:
             self.largest = self.structure.largest_force(self.point.response)
         self.load = self._holding()
@@ -202,19 +202,18 @@ class _Settling:
         if self.share:
             self.load = self.load - self.share * self._carried()
             at_present = Path(self.structure, self._nothing, self._nothing, (self.share, self.share))
-            self.point = at_present.start(self.point.displacement, start.plastic_strain)
-        self.slack = at_rest.branches(self.point.response).slack
+            self.point = at_present.start(self.point.displacement, permanent)
+        self.slack = of_axes(at_rest.branches(self.point.response).slack)
 
-    def _grown(self, start: Start) -> Point | None:
+    def _grown(self) -> Point | None:
         """The equilibrium without load once lack of fit, warmth and moved supports have grown; None if there is none.
 
         Joints move as rods yield on the way: with all joints held at first, rods would yield that never do. Where a part
         is too large for that, too, it is begun from where joints would be if no rod yielded.
         """
-        limitless = np.full(len(self.structure.ends), np.inf)
-        elastic = replace(self.structure, tension_limit=limitless, compression_limit=limitless)
+        elastic = self.structure.unyielding
         moved, share, step = self.point.displacement, 0.0, LARGEST_GROWTH
-        point = Point(0.0 * moved, start.plastic_strain, 0.0, self.point.response, 0.0)
+        point = Point(0.0 * moved, self.begun, 0.0, self.point.response, 0.0)
         while share < 1.0 and step > SMALLEST_GROWTH:
             further = min(share + step, 1.0)
             path = Path(self.structure.grown(further), self._nothing, self._nothing)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -15,7 +15,7 @@ from pinjoint.components.language import marked
 from pinjoint.components.model import Model
 from pinjoint.components.particle import of_rigid_supports
 from pinjoint.components.rod import bends, has_struts
-from pinjoint.systems.statics.equations import Array, Flags, Response, Rows, Structure
+from pinjoint.systems.statics.equations import Array, Flags, Response, Rows, Structure, of_axes
 from pinjoint.systems.statics.events import Event
 
 STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = (
@@ -42,10 +42,12 @@ class StaticState:
     displacement: Array
     rotation: Array
     plastic_strain: Array
+    plastic_rotation: Array
     axial_force: Array
     strain: Array
     length: Array
     yielding: Flags
+    hinge_yielding: Flags
     reaction: Array
     reaction_moment: Array
     diagrams: Mapping[str, Array]
@@ -79,17 +81,21 @@ class StaticState:
         if structure.bending is not None and response.bent is not None:
             elastic += 1000.0 * float(structure.bending.energy(response.bent.slopes).sum())
         elastic += 500.0 * float((response.spring_force * displacement).sum())
+        plastic, limited = response.plastic_strain[rods], structure.at_limit(response)[rods]
+        none = np.zeros((rods.stop, 2))
         length = response.length
         if structure.first_order:  # response.length is that about which rods turn
             length = structure.original_length + response.elongation - structure.misfit
         return cls(
             displacement=displacement[:count, :2],
             rotation=structure.rotation(displacement)[:count],
-            plastic_strain=response.plastic_strain[rods],
+            plastic_strain=of_axes(plastic),
+            plastic_rotation=none if plastic.ndim == 1 else plastic[:, 1:],
             axial_force=response.axial_force[rods],
             strain=response.strain[rods],
             length=length[rods],
-            yielding=structure.at_limit(response)[rods],
+            yielding=of_axes(limited),
+            hinge_yielding=none > 0.0 if limited.ndim == 1 else limited[:, 1:],
             reaction=reaction[:, :2],
             reaction_moment=structure.rotation(reaction),
             diagrams={
@@ -129,10 +135,17 @@ class StaticState:
             "length": self.length,
             "strain": self.strain,
             "plastic_strain": self.plastic_strain,
+            "plastic_rotation": self.plastic_rotation,
             "yielding": self.yielding,
+            "hinge_yielding": self.hinge_yielding,
         }
         found = {f"particles.{name}": values for name, values in of_particles.items()}
         return found | {f"rods.{name}": values for name, values in of_rods.items()}
+
+    @property
+    def permanent(self) -> Array:
+        """What yielding has left in the rods and their ends, (rods, 3)."""
+        return np.column_stack([self.plastic_strain, self.plastic_rotation])
 
     @property
     def balanced(self) -> bool:
@@ -141,37 +154,46 @@ class StaticState:
 
     def put(self, model: Model) -> None:
         """Put a model into this state: its displacements and plastic strains, without velocity."""
-        moving = ("displacement", "velocity", *(("rotation", "angular_velocity") if bends(model) else ()))
-        for name in (*(f"particles.{name}" for name in moving), "rods.plastic_strain"):
-            model.give(name, self.columns[name])
+        turning, columns = bends(model), self.columns
+        moving = ("displacement", "velocity", *(("rotation", "angular_velocity") if turning else ()))
+        yielded = ("plastic_strain", *(("plastic_rotation",) if turning else ()))
+        for name in (*(f"particles.{name}" for name in moving), *(f"rods.{name}" for name in yielded)):
+            model.give(name, columns[name])
 
 
 def _of_struts(model: Model, response: Response) -> dict[str, NDArray[Any]]:
     """How far struts are bent aside, as a column by its name; none where there are none."""
     if not has_struts(model):
         return {}
-    strain, plastic = (part[: model.rods.count] for part in (response.strain, response.plastic_strain))
+    strain, plastic = (part[: model.rods.count] for part in (response.strain, of_axes(response.plastic_strain)))
     return {"lateral_deflection": amplitude(model.rods, strain, plastic)}
 
 
 @dataclass(frozen=True)
 class Start:
-    """The state that settling starts from: displacement (n, 2) in m, plastic strain (rods,), and rotation (n,).
+    """The state that settling starts from: displacement (n, 2) in m, rotation (n,), and what is permanent, plastic strain of
+    rods (rods,), or with plastic rotations of their ends (rods, 3).
 
     load_factor: what acts there, if it is an equilibrium.
     """
 
     displacement: Array
-    plastic_strain: Array
     rotation: Array
+    permanent: Array
     load_factor: float = field(default=1.0, kw_only=True)
 
     @classmethod
     def present(cls, model: Model) -> Start:
         """A model's present state, or the solution that it shows."""
-        particles, strain = model.particles, model.rods.plastic_strain.copy()
         factor = 1.0 if model.solution is None else model.settings.load_steps[-1]
-        return cls(particles.displacement.copy(), strain, particles.rotation.copy(), load_factor=factor)
+        return cls.stored(model.column, factor)
+
+    @classmethod
+    def stored(cls, column: Callable[[str], NDArray[Any]], load_factor: float = 1.0) -> Start:
+        """The state in which columns are, by "table.field"."""
+        strain, turned = column("rods.plastic_strain"), column("rods.plastic_rotation")
+        moved, rotation = (column(f"particles.{name}").copy() for name in ("displacement", "rotation"))
+        return cls(moved, rotation, np.column_stack([strain, turned]), load_factor=load_factor)
 
     @classmethod
     def of(cls, model: Model) -> Start:
@@ -182,7 +204,7 @@ class Start:
         return replace(start, displacement=free + moved[:, :2], rotation=rotation)
 
     @classmethod
-    def undeformed(cls, model: Model, plastic_strain: Array) -> Start:
-        """The undeformed beginning with this plastic strain: only supports that have settled are displaced."""
+    def undeformed(cls, model: Model, permanent: Array) -> Start:
+        """The undeformed beginning with what is permanent: only supports that have settled are displaced."""
         moved = settled(model)
-        return cls(moved[:, :2], plastic_strain, moved[:, 2])
+        return cls(moved[:, :2], moved[:, 2], permanent)

@@ -11,7 +11,15 @@ import numpy as np
 from pinjoint.components.language import begun, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.theory import FIRST_ORDER
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
+from pinjoint.systems.statics.equations import (
+    ROUND_OFF,
+    Array,
+    Response,
+    Structure,
+    largest,
+    normalised,
+    of_axes,
+)
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External, loose_bodies
@@ -69,7 +77,8 @@ class FirstOrder:
         one of another lack of fit.
         """
         held, firm = elastic(rods, supports, plastic_strain, share), self.structure.inextensible
-        longer = rods.rest_length * plastic_strain - held.elongation
+        permanent = of_axes(plastic_strain)
+        longer = rods.rest_length * permanent - held.elongation
         by, forces = self._answer(load - rods.internal(held), longer[firm])
         found = elastic(rods, supports + by, plastic_strain, share)
         if len(firm):
@@ -77,7 +86,7 @@ class FirstOrder:
                 part.copy() for part in (found.axial_force, found.strain, found.elongation)
             )
             axial[firm] += forces
-            strain[firm], elongation[firm] = plastic_strain[firm], (rods.rest_length * plastic_strain)[firm]
+            strain[firm], elongation[firm] = permanent[firm], (rods.rest_length * permanent)[firm]
             found = replace(found, axial_force=axial, strain=strain, elongation=elongation)
         return supports + by, found
 
@@ -159,8 +168,11 @@ class FirstOrder:
 
 
 def elastic(structure: Structure, displacement: Array, plastic_strain: Array, share: float) -> Response:
-    """How rods respond of which none yields."""
+    """How rods respond of which none yields; what would is flowing."""
     found = structure.respond(displacement, plastic_strain, share)
+    if found.flowing.ndim > 1:
+        as_if = structure.unyielding.respond(displacement, plastic_strain, share)
+        return replace(as_if, flowing=found.flowing)
     return replace(found, axial_force=found.elastic_force, plastic_strain=plastic_strain)
 
 
@@ -178,7 +190,7 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
             raise NoEquilibrium("mechanism", body.event(model, factor).message)
     supports = structure.of_supports(structure.field(start.displacement, start.rotation))
     theory = FirstOrder(model, structure)
-    moved, elastic = theory.equilibrium(load, supports, start.plastic_strain, factor, structure)
+    moved, elastic = theory.equilibrium(load, supports, start.permanent, factor, structure)
     unbalanced = structure.internal(elastic) - load
     unbalanced = unbalanced - structure.of_supports(unbalanced)
     forces = max(structure.largest(load), structure.largest_force(elastic))

@@ -16,7 +16,7 @@ from pinjoint.components.particle import supported
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.wording import missing
 from pinjoint.components.world import called
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, largest
+from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, largest, of_axes
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import rod_names
 from pinjoint.systems.statics.settle import Settlement, settle
@@ -112,7 +112,7 @@ class Theories:
 
     def _overshoots(self, model: Model, final: StaticState) -> Iterator[Event]:
         """Rods that yielded, or yielded further, unlike under a slowly growing load."""
-        present, before = model.rods.plastic_strain, self.start.plastic_strain
+        present, before = model.rods.plastic_strain, of_axes(self.start.permanent)
         static, flowed = np.abs(final.plastic_strain - before), np.abs(present - before)
         limit = np.where(present > before, model.rods.tension_limit, model.rods.compression_limit)
         further = flowed - static > np.maximum(FURTHER * static, LEAST * limit / model.rods.stiffness)

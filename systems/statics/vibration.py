@@ -114,7 +114,7 @@ def rests_under_load(model: Model) -> bool:
 def _present(structure: Structure, state: StaticState | Start) -> tuple[Array, Response]:
     """Displacements and rods in a state under its load."""
     place = structure.field(state.displacement, state.rotation)
-    return place, structure.respond(place, state.plastic_strain, state.load_factor)
+    return place, structure.respond(place, state.permanent, state.load_factor)
 
 
 def _modes(
