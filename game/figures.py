@@ -10,6 +10,7 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, deflections, is_frame
 from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.envelope import Envelope
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends, nodes
@@ -87,8 +88,9 @@ def figure(
     moved: bool = False,
     grows: bool = False,
     over: Shape | None = None,
+    enveloped: Envelope | None = None,
 ) -> Block:
-    """A picture of a model, with the diagrams of a quantity, and a shape over it.
+    """A picture of a model, with the diagrams of a quantity or their envelope, and a shape over it.
 
     row: how many figures stand in a row; 0: by its shape. unit: pixels per point of its texts. measured: with its
     dimensions and all names. moved: so that displacements are well seen, by which factor the caption says; else undeformed.
@@ -102,7 +104,7 @@ def figure(
         across, tall = ROOMS[wide > high]
         rooms += [(WIDTH, _PART * ROOMS[0][1], _SPARE), (across, tall - _CAPTION, 2.0 * _SPARE)]
     view = View(legend=False, has_scale=False, all_diagrams=diagrams is not None, quantity=diagrams or AXIAL)
-    view.names, view.shape = measured, over
+    view.names, view.shape, view.enveloped = measured, over, enveloped
     view.cuts, view.has_units, view.pixel_ratio = tuple(cuts), has_units, unit
     pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
     model.settings.diagram_scale = scale_to(_DIAGRAM, pulled)

@@ -17,6 +17,8 @@ from pinjoint.commands.analysis import FOUND
 from pinjoint.commands.arguments import Parser, UsageError, flag, option, positive
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, session_of
 from pinjoint.commands.output import writable, writing
+from pinjoint.components.bent import MOMENT
+from pinjoint.components.cases import choose
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.view import drawn_places
@@ -130,6 +132,10 @@ def _parser() -> Parser:
         "--influence NAME",
         "also draw an influence line: of AB, AB.start, AB.end, AB.shear, AB.M@1.5 (also N, V; 50%), A.y or B.rotation",
     )
+    acting = parser.add_mutually_exclusive_group()
+    option(acting, "--case NAME", "the load case that acts alone")
+    option(acting, "--combination NAME", "the combination of load cases that acts")
+    flag(acting, "--envelope", "with --static: the envelope of all combinations")
     option(parser, "--theme", "the colours; default light", choices=theme_names(), default="light")
     option(
         parser,
@@ -168,6 +174,7 @@ def _check_static(options: argparse.Namespace) -> None:
     """Raise UsageError where an option does not go with statics."""
     shapes = {True: "--undeformed", False: "--deformed", None: ""}
     option = "--theory" if options.theory is not None else shapes[options.undeformed]
+    option = option or "--envelope" * options.envelope
     if option and not options.static:
         raise UsageError("{option} works only together with --static; add it.", option=option)
     moving = options.until_rest or options.at is not None or options.output.lower().endswith(".gif")
@@ -200,8 +207,13 @@ def _show_shape(session: Session, options: argparse.Namespace) -> None:
 
 def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:
     status = "time reached"
+    if options.case is not None or options.combination is not None:
+        choose(session.model, options.case, options.combination)
     if options.static:
         status = _solve(session, options)
+        session.view.envelope = options.envelope
+        if options.envelope and options.diagrams_of is None:
+            session.view.quantity = MOMENT
     elif options.until_rest:
         status = session.run(until="rest", limit=options.limit)
     elif options.at is not None:

@@ -21,6 +21,7 @@ from pinjoint.components.snapshot import Snapshot
 from pinjoint.documents import models
 from pinjoint.documents.assessment import Assessment
 from pinjoint.documents.chronicle import Chronicle
+from pinjoint.documents.envelope import Envelopes
 from pinjoint.documents.exaggeration import Exaggeration
 from pinjoint.documents.history.history import History
 from pinjoint.documents.history.log import Edit, Entry
@@ -81,6 +82,7 @@ class OpenDocument:
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
         self.statics = Statics(model, self._permanent_undeformed)
+        self.envelopes = Envelopes(model, self._permanent_undeformed)
         self.exaggeration = Exaggeration(model)
         self.chronicle = Chronicle(model, self.simulation)
         self.file = file

@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 70_518,
-    "files": 380,
-    "names": 3_895,  # functions, classes and constants of modules
-    "public names": 2_315,
-    "numbers": 1_503,  # other than 0, 1 and 2, in constants and defaults
+    "lines": 71_419,
+    "files": 385,
+    "names": 3_932,  # functions, classes and constants of modules
+    "public names": 2_337,
+    "numbers": 1_510,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 57_093,
+    "lines of tests": 57_323,
 }
 
 
