@@ -315,7 +315,13 @@ def _state_word(context: Context, *, brief: bool) -> str:
     if not context.busy:
         moved = context.view.provisional and context.scene == PAUSE and not brief
         return marked("paused, not in equilibrium") if moved else marked("paused")
-    return marked("running below the set speed") if context.document.live.clock.lagging else marked("running")
+    if not context.document.live.clock.lagging:
+        return marked("running")
+    slow = (
+        marked("running below the set speed: getting ready"),
+        marked("running below the set speed: steps take too long"),
+    )
+    return slow[0] if context.readiness.readies else slow[1]
 
 
 def _problem(context: Context) -> str:
