@@ -29,6 +29,7 @@ TOLERANCE = 1e-10  # of HiGHS, the least that it takes
 PASSED = 1e-12  # of a plastic moment, by which one between ends may pass it
 ROUNDS = 60  # in which places are added
 SAME = 1e-9  # share of a rod within which two places are one
+NEAR = 1e-3  # share of a rod within which hinges of the mechanism are one
 FLOWS = 1e-7  # of the largest rate of the mechanism: a smaller one is none
 
 NO_LIMIT, COLLAPSE, MECHANISM, OVERLOADED, LOST = (
@@ -277,13 +278,17 @@ class _Program:
         motion = structure.spread(found.eqlin.marginals / structure.measure)
         moved = normalised(motion) if motion.any() else motion
         scale = float((moved * motion).sum() / max(float((motion**2).sum()), 1e-300))
-        kinks = [
-            (section, scale * float(below - above) / float(length[section.row]))
-            for section, (above, below) in zip(
-                self.sections, found.ineqlin.marginals.reshape(-1, 2), strict=True
-            )
-            if abs(below - above) > FLOWS * largest(found.ineqlin.marginals)
-        ]
+        kinks: list[tuple[Section, float]] = []
+        for section, (above, below) in sorted(zip(self.sections, pairs.tolist(), strict=True)):
+            turned = scale * (below - above) / float(length[section.row])
+            if abs(below - above) <= FLOWS * largest(pairs):
+                continue
+            before, known = kinks[-1] if kinks else (section, 0.0)
+            if before.row == section.row and section.share - before.share < NEAR and known * turned > 0.0:
+                share = (known * before.share + turned * section.share) / (known + turned)
+                section, turned = section._replace(share=share), known + turned
+                del kinks[-1]
+            kinks.append((section, turned))
         factor = max(0.0, float(found.x[-1]))
         return LimitLoad(
             factor,
