@@ -277,7 +277,9 @@ class _Program:
         rates[np.abs(rates) < FLOWS * largest(rates)] = 0.0
         motion = structure.spread(found.eqlin.marginals / structure.measure)
         moved = normalised(motion) if motion.any() else motion
-        scale = float((moved * motion).sum() / max(float((motion**2).sum()), 1e-300))
+        pairs = found.ineqlin.marginals.reshape(-1, 2)
+        sizes = (largest(moved), largest(motion)) if motion.any() else (1.0, largest(pairs) or 1.0)
+        scale = sizes[0] / sizes[1]
         kinks: list[tuple[Section, float]] = []
         for section, (above, below) in sorted(zip(self.sections, pairs.tolist(), strict=True)):
             turned = scale * (below - above) / float(length[section.row])

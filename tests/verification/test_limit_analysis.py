@@ -12,8 +12,11 @@ from hypothesis import strategies as st
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
+from pinjoint.components.model import Model
+from pinjoint.components.rod import Rod
 from pinjoint.documents import models
 from pinjoint.documents.shapes import collapse_shapes
+from pinjoint.systems.edit.dividing import divide_at
 from pinjoint.systems.statics.limit_analysis import LimitLoad
 from pinjoint.systems.statics.settle import settle
 from tests.reference.elements import Model as Document
@@ -202,3 +205,27 @@ def test_a_window_offers_to_divide_where_a_hinge_forms_and_draws_the_collapse() 
     (shape,) = collapse_shapes(session.model)
     assert shape.parts is not None
     assert len(shape.parts.between) == 2
+
+
+def collapse_in_steps(made: Model, limit: LimitLoad) -> float:
+    """Where load steps of first-order theory have a mechanism."""
+    asked = max(1.5 * limit.factor, 1.0) if math.isfinite(limit.factor) else 50.0
+    kinds = ("plastic mechanism", "collapse", "mechanism")
+    events = settle(made, [asked], theory="first-order").events
+    return next((event.load_factor for event in events if event.kind in kinds), math.inf)
+
+
+@pytest.mark.parametrize("start", range(0, 200, 50))
+def test_load_steps_of_random_frames_collapse_there(start: int) -> None:
+    """Half of them under loads between ends; members are divided where a hinge forms there, else steps go on further."""
+    for seed in range(start, start + 50):
+        document = random_frame(seed, loaded=seed % 2 == 1)
+        made, limit = models.load(document), found_of(document)
+        places: dict[Rod, list[float]] = {}
+        for section, _ in limit.between:
+            places.setdefault(made.rods[section.row], []).append(section.share)
+        for divided, shares in places.items():
+            divide_at(made, divided, sorted(shares))
+        assert collapse_in_steps(made, limit) == pytest.approx(limit.factor, rel=1e-9), seed
+        if places and seed < 20:
+            assert collapse_in_steps(models.load(document), limit) > limit.factor * (1.0 + 1e-9), seed
