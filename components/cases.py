@@ -221,5 +221,6 @@ def choose(world: World, case: str | None, combination: str | None) -> None:
             raise FieldError(
                 "There is no load case '{name}'; choose one of {known}.", name=cut(case), known=", ".join(known)
             )
-        settings.combinations = {case: {case: 1.0}}
+        if case in settings.combinations:  # which means another thing by that name
+            settings.combinations = {case: {case: 1.0}}
     settings.combination = case or combination or ""

@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 70_942,
-    "files": 382,
-    "names": 3_913,  # functions, classes and constants of modules
-    "public names": 2_321,
-    "numbers": 1_504,  # other than 0, 1 and 2, in constants and defaults
+    "lines": 71_300,
+    "files": 383,
+    "names": 3_928,  # functions, classes and constants of modules
+    "public names": 2_334,
+    "numbers": 1_509,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 57_120,
+    "lines of tests": 57_288,
 }
 
 
