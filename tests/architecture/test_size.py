@@ -13,7 +13,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 71_310,
+    "lines": 71_312,
     "files": 383,
     "names": 3_929,  # functions, classes and constants of modules
     "public names": 2_334,
