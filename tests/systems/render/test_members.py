@@ -177,10 +177,9 @@ def test_plastic_hinges_are_filled_the_larger_the_farther_they_turned_with_an_ar
         assert away @ way / np.hypot(*away) / np.hypot(*way) > 0.8, "along its own rod"
     arrows = [m for m in picture.marks if isinstance(m, Fills) and m.colour == LIGHT.yielding]
     assert [list(m.of[1]) for m in arrows if m.of] == [[0, 1]]
-    turns = [
-        np.cross(m[0] - a, m[0] - 0.5 * (m[1] + m[2]))
-        for m, a in zip(arrows[0].corners, hinges.at, strict=True)
-    ]
+    tips, necks = arrows[0].corners[:, 0], arrows[0].corners[:, 1:].mean(axis=1)
+    out, forward = tips - hinges.at, tips - necks
+    turns = out[:, 0] * forward[:, 1] - out[:, 1] * forward[:, 0]
     assert (np.sign(turns) == [1.0, -1.0]).all(), "y down: the rod turns the other way than its joint"
     assert "plastic hinge" in picture.texts
 
