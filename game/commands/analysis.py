@@ -249,9 +249,15 @@ def _limit_load(model: Model, theory: str) -> Run:
     """The collapse load by limit analysis, beside first-order statics of models that it has an answer for."""
     if theory != FIRST_ORDER or not can_collapse(model):
         return {}
+    from pinjoint.collapse_steps import collapse_steps
     from pinjoint.systems.statics.limit_analysis import LimitLoad
 
-    return {"limit_load": LimitLoad.of(model).record(model)}
+    steps = collapse_steps(model)
+    heads, *rows = steps.rows() if steps is not None else [()]
+    return {
+        "limit_load": LimitLoad.of(model).record(model),
+        "steps": [dict(zip(heads, row, strict=True)) for row in rows],
+    }
 
 
 def _interrupted(simulation: Simulation, name: str, states: list[State]) -> Run:
