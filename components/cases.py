@@ -137,7 +137,10 @@ class Acting(NamedTuple):
     @classmethod
     def of(cls, world: World, *chosen: Mapping[str, float] | None) -> Acting:
         """Those of some combinations; None: all cases once. None given: those of the one that is chosen in the model."""
-        every, known = chosen or (factors(world),), cases(world)
+        every = chosen or (factors(world),)
+        if every == (None,):
+            return cls(np.ones(1), *(np.ones((1, world.tables[name].count)) for name in TABLES))
+        known = cases(world)
         by = np.array([[1.0 if one is None else one.get(case, 0.0) for case in known] for one in every])
         number = {case: place for place, case in enumerate(known)}
         of_each = ([number[case] for case in world.tables[name].case] for name in TABLES)

@@ -10,7 +10,6 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, deflections, is_frame
 from pinjoint.components.camera import Camera, Viewport
-from pinjoint.components.envelope import Envelope
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends, nodes
@@ -24,6 +23,7 @@ from pinjoint.systems.render.model.arrows import largest_force
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import Theme, load_theme
 from pinjoint.systems.render.typography import text_width
+from pinjoint.systems.statics.envelope import Envelope
 from pinjoint.systems.statics.equations import largest
 from pinjoint.tables import Table
 

@@ -16,7 +16,6 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.view import Shape
-from pinjoint.documents.envelope import Envelopes
 from pinjoint.documents.models import document, load
 from pinjoint.documents.statics import Statics
 from pinjoint.figures import diagram_titles, figure, printed, shape, signs
@@ -41,7 +40,7 @@ def sheet(
 ) -> bytes:
     """The sheet of a model, solved from its undeformed beginning, as a PDF file. Raises NoSheet.
 
-    shapes: drawn over it, too, such as influence lines. enveloped: with the envelope of all combinations, or NoEnvelope.
+    shapes: drawn over it, too, such as influence lines. enveloped: with the envelope of all combinations, or ValueError.
     """
     solved = Solved(model, theory, enveloped=enveloped)
     return as_paper(
@@ -69,7 +68,7 @@ class Solved:
         self.said = joined([settlement.message, note])
         copy.show(statics)
         self.results = Results.of(copy)
-        self.envelope = Envelopes(copy, lambda: permanent).envelope if enveloped else None
+        self.envelope = statics.envelope() if enveloped else None
 
 
 def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> list[Flowable]:
@@ -90,7 +89,7 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
     if (envelope := solved.envelope) is not None:
         for quantity, title in diagram_titles().items():
             if bends(model) or quantity == AXIAL:
-                caption = tr("Envelope of {names}: {title}", names=listed(envelope.names), title=title)
+                caption = tr("Envelope of {names}: {title}", names=listed(envelope.combinations), title=title)
                 figures.append(draw(caption, diagrams=quantity, enveloped=envelope))
     large = [block for block in figures if block[1][0].fills_page]
     tables = {

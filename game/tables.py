@@ -93,11 +93,11 @@ class Column:
 
 
 class Words(Column):
-    """One of some words in each row (n,), by whose numbers rows are ordered."""
+    """A word in each row, by whose letters rows are ordered."""
 
-    def __init__(self, title: str, words: Sequence[str], which: Array, *, key: str) -> None:
-        super().__init__(title, "", which.astype(np.float64), key=key)
-        self._words: list[str] = [words[number] for number in which.tolist()]
+    def __init__(self, title: str, words: Sequence[str], *, key: str) -> None:
+        super().__init__(title, "", np.unique(words, return_inverse=True)[1].astype(np.float64), key=key)
+        self._words = words
 
     @property
     def plain(self) -> list[Any]:

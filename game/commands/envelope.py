@@ -27,10 +27,11 @@ def answer(options: Namespace, model: Model, analysis: Analysis) -> int:
     """Write the envelope of a model; returns the exit status, 1 where a combination has no solution."""
     from pinjoint.systems.statics.envelope import Envelope
     from pinjoint.systems.statics.events import NoEquilibrium
+    from pinjoint.systems.statics.state import Start
 
-    factors, strain = analysis.load_factors or (1.0,), model.rods.plastic_strain
+    factors, permanent = analysis.load_factors or (1.0,), Start.present(model).permanent
     try:
-        found = Envelope.of(model, (), analysis.theory, factors, strain)
+        found = Envelope.of(model, (), analysis.theory, factors, permanent)
     except NoEquilibrium as reason:
         tell(str(reason))
         return NOT_ANSWERED

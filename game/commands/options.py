@@ -55,7 +55,7 @@ def add_model(parser: argparse.ArgumentParser) -> None:
     option(
         parser,
         "--combination NAME",
-        "let a combination of load cases act, of those in its settings",
+        "let a combination of load cases of its settings act, or one case alone",
         "settings.combination={}".format,
         **change,
     )

@@ -18,7 +18,6 @@ from pinjoint.commands.arguments import Parser, UsageError, flag, option, positi
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, session_of
 from pinjoint.commands.output import writable, writing
 from pinjoint.components.bent import MOMENT
-from pinjoint.components.cases import choose
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.view import drawn_places
@@ -130,12 +129,9 @@ def _parser() -> Parser:
     option(
         shape,
         "--influence NAME",
-        "also draw an influence line: of AB, AB.start, AB.end, AB.shear, AB.M@1.5 (also N, V; 50%), A.y or B.rotation",
+        "also draw an influence line: of AB, AB.start, AB.end, AB.shear, AB.M@1.5 (also N, V; 50 %%), A.y or B.rotation",
     )
-    acting = parser.add_mutually_exclusive_group()
-    option(acting, "--case NAME", "the load case that acts alone")
-    option(acting, "--combination NAME", "the combination of load cases that acts")
-    flag(acting, "--envelope", "with --static: the envelope of all combinations")
+    flag(parser, "--envelope", "with --static: the envelope of all combinations of load cases")
     option(parser, "--theme", "the colours; default light", choices=theme_names(), default="light")
     option(
         parser,
@@ -207,8 +203,6 @@ def _show_shape(session: Session, options: argparse.Namespace) -> None:
 
 def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:
     status = "time reached"
-    if options.case is not None or options.combination is not None:
-        choose(session.model, options.case, options.combination)
     if options.static:
         status = _solve(session, options)
         session.view.envelope = options.envelope

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pinjoint.commands.arguments import Parser, UsageError, flag, option
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, model_of
 from pinjoint.commands.output import writable, write
-from pinjoint.components.cases import choose
 from pinjoint.components.theory import FIRST_ORDER
 
 
@@ -20,18 +19,13 @@ def command(words: Sequence[str]) -> int:
     option(parser, "--output FILE", "the PDF to write", writable, required=True)
     add_theory(parser, FIRST_ORDER)
     option(parser, "--influence NAME", "draw influence lines, too: see verify --help", nargs="+", default=())
-    acting = parser.add_mutually_exclusive_group()
-    option(acting, "--case NAME", "the load case that acts alone")
-    option(acting, "--combination NAME", "the combination of load cases that acts")
-    flag(parser, "--envelope", "also the envelope of all combinations")
+    flag(parser, "--envelope", "also the envelope of all combinations of load cases")
     options = parser.parse_args(words)
     from pinjoint.documents.influence import Influence  # it imports scipy
     from pinjoint.sheet import sheet  # it imports reportlab
     from pinjoint.systems.statics.events import NoEquilibrium
 
     model = model_of(options)
-    if options.case is not None or options.combination is not None:
-        choose(model, options.case, options.combination)
     try:
         lines = Influence.of(model, *options.influence) if options.influence else []
     except NoEquilibrium as error:

@@ -237,7 +237,7 @@ class Statics:
 
         model, settings = self._model, self._model.settings
         with model.own_state():
-            return Envelope.of(model, names, theory or settings.theory, settings.load_steps, self._strain())
+            return Envelope.of(model, names, theory or settings.theory, settings.load_steps, self._permanent())
 
     def second_order(self, elapsed: float | None = None) -> str:
         """By how much, and where, the theories differ, where that is worth a word; "" of a large structure.

@@ -18,7 +18,6 @@ from pinjoint.components.settings import PAUSE
 from pinjoint.components.tags import Hovered
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
-from pinjoint.documents.envelope import NoEnvelope
 from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import Drawing, DrawRod, onto_member, tool_in_hand
 from pinjoint.editor.gestures.moving import Placing
@@ -88,13 +87,13 @@ def show(context: Context, elapsed: float) -> None:
     view.enveloped = None
     if view.envelope and solved:
         try:
-            view.enveloped = context.document.envelopes.envelope
-            if left_out := view.enveloped.unsolved:
+            view.enveloped = context.document.envelope
+            if left_out := list(view.enveloped.without):
                 said = tr(
                     "Without an equilibrium, and so left out of the envelope: {names}.", names=listed(left_out)
                 )
                 lasting.append(said)
-        except NoEnvelope as reason:
+        except ValueError as reason:  # there are none, or none has an equilibrium
             view.envelope, context.notice = False, str(reason)
     view.preview = _preview(context)
     if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):

@@ -79,63 +79,6 @@ def narrowed(force, missed, steepness, low, high):
 
 
 @compiled
-def slipped(
-    elongation,
-    slope_start,
-    slope_end,
-    load_start,
-    load_end,
-    rods_stiffness,
-    rods_rest_length,
-    rods_plastic_strain,
-    rods_tension_limit,
-    rods_compression_limit,
-    rods_bending_stiffness,
-    rods_end_stiffness,
-    rods_initial_slopes,
-    rods_bowing,
-    rods_moment_limit,
-):
-    """Slips of both ends (rad) and axial force (kN) of an elastic, perfectly plastic rod; the moments are M(φ − x).
-
-    elongation: of the chord. slopes: of its joints, less plastic rotations. load_start, load_end: moments by what acts
-    between the ends.
-    """
-    bow_start = rods_bowing[0] * slope_start + rods_bowing[1] * slope_end
-    bow_end = rods_bowing[1] * slope_start + rods_bowing[2] * slope_end
-    by_start, by_end = slope_start - rods_initial_slopes[0], slope_end - rods_initial_slopes[1]
-    bent_start = rods_end_stiffness[0] * by_start + rods_end_stiffness[1] * by_end + load_start
-    bent_end = rods_end_stiffness[1] * by_start + rods_end_stiffness[2] * by_end + load_end
-    firm = FIRM * rods_bending_stiffness / rods_rest_length
-    limit_start, limit_end = rods_moment_limit
-    strain = elongation / rods_rest_length - rods_plastic_strain
-    bow = 0.5 * (slope_start * bow_start + slope_end * bow_end)
-    force = min(max(rods_stiffness * (strain + bow), -rods_compression_limit), rods_tension_limit)
-    found, low, high = force, -math.inf, math.inf
-    slip_start = slip_end = 0.0
-    for _ in range(MOST_TRIALS):
-        thrust = max(force * rods_rest_length, firm)
-        moment_start, moment_end = bent_start + thrust * bow_start, bent_end + thrust * bow_end
-        slip_start, slip_end = slips(
-            moment_start, moment_end, limit_start, limit_end, thrust, rods_end_stiffness, rods_bowing
-        )
-        at_start, at_end = slope_start - slip_start, slope_end - slip_end
-        left_start = rods_bowing[0] * at_start + rods_bowing[1] * at_end
-        left_end = rods_bowing[1] * at_start + rods_bowing[2] * at_end
-        bow = 0.5 * (at_start * left_start + at_end * left_end)
-        elastic = rods_stiffness * (strain + bow)
-        found = min(max(elastic, -rods_compression_limit), rods_tension_limit)
-        missed = force - found
-        softer = softening(thrust, left_start, left_end, slip_start, slip_end, rods_end_stiffness, rods_bowing)
-        steepness = 1.0 + rods_stiffness * rods_rest_length * softer * (found == elastic and thrust > firm)
-        nearer, low, high = narrowed(force, missed, steepness, low, high)
-        if abs(missed) <= CLOSE * rods_stiffness * (abs(strain) + bow) or nearer == force:
-            break
-        force = nearer
-    return slip_start, slip_end, found
-
-
-@compiled
 def turned(slip_start, slip_end, rods_plastic_rotation, rods_moment_limit):
     """The plastic rotations of both ends after they slipped, and the dissipated energy |M Δp|."""
     lost = 0.0

@@ -28,6 +28,7 @@ from pinjoint.systems.render.model.members import (
     draw_hinges,
     draw_inextensible,
     draw_moments,
+    draw_plastic_hinges,
     draw_span_loads,
 )
 from pinjoint.systems.render.model.sheet import MANY, Sheet, Shown, Stage, measure
@@ -145,6 +146,7 @@ def _draw_structure(sheet: Sheet) -> None:
     draw_rods(sheet)
     draw_particles(sheet)
     draw_hinges(sheet)
+    draw_plastic_hinges(sheet)
     draw_inextensible(sheet)
     sheet.marks += sheet.above
     draw_cuts(sheet)

@@ -17,15 +17,14 @@ import numpy as np
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, forces_along, inner_forces
 from pinjoint.components.cases import Acting, choose, settled
 from pinjoint.components.derived import initial_slopes, moments_along, on_joints, unforced
-from pinjoint.components.field import Column
+from pinjoint.components.field import Column, FieldError
 from pinjoint.components.language import tr
-from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.spans import Curves, Kinks, extremes
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.wording import missing
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest
+from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest, of_rods
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.settle import settle
@@ -67,8 +66,7 @@ class States(NamedTuple):
         moved = _solved(model, structure, whole, load, whole.field(places[:, :2], places[:, 2]))
         response = whole.respond(moved, np.zeros(len(length)), 1.0)
         ends, left = whole.end_moments(response) * [-1.0, 1.0], response.axis[:, ::-1] * [-1.0, 1.0]
-        beyond = np.abs(ends) > np.tile(rods.moment_limit, (count, 1))
-        soft = response.soft | (beyond.any(axis=1) & model.settings.plasticity)
+        soft = of_rods(response.soft)
         on_starts = between.on_ends(len(length))[:, 0]
         shear = response.bent.shear if response.bent is not None else 0.0
         across = shear - (on_starts * left).sum(axis=1)
@@ -84,10 +82,10 @@ class States(NamedTuple):
         return cls(moved, held, {name: curves[name] for name in DIAGRAMS}), true
 
     @classmethod
-    def alone(cls, model: Model, theory: str, factors: Sequence[float], strain: Column) -> States:
+    def alone(cls, model: Model, theory: str, factors: Sequence[float], permanent: Array) -> States:
         """The one of what acts in a model, which shows it then. Raises ValueError, NoEquilibrium where there is none."""
         model.show(None)
-        found = settle(model, factors, theory, Start.undeformed(model, strain)).equilibrium
+        found = settle(model, factors, theory, Start.undeformed(model, permanent)).equilibrium
         shown = _Shown(found.columns, model.next_revision(), theory == FIRST_ORDER, found.load_factor)
         model.show(shown)
         every = np.arange(model.rods.count)
@@ -133,8 +131,14 @@ def _repeated(structure: Structure, count: int) -> Structure:
     return replace(structure, **made | {"ends": made["ends"] + further}, bending=bending)
 
 
+def _lasting(structure: Structure) -> Structure:
+    """A structure of which no rod leaves the line of its law."""
+    return replace(structure.unyielding, sense=np.zeros_like(structure.sense))
+
+
 def _solved(model: Model, structure: Structure, whole: Structure, load: Array, supports: Array) -> Array:
     """Displacements of a repeated structure under loads and displacements of rigid supports, (combinations × n, …)."""
+    structure, whole = (_lasting(one) for one in (structure, whole))
     theory, index = FirstOrder(model, structure), structure.index
     count = len(load) // len(structure.position)
     supports = whole.of_supports(supports)
@@ -158,14 +162,14 @@ def _solved(model: Model, structure: Structure, whole: Structure, load: Array, s
     return supports + spread(solution)
 
 
-def _superposes(model: Model, strain: Column) -> bool:
+def _superposes(model: Model, permanent: Array) -> bool:
     """True if first-order theory of a model is linear as long as no rod leaves the line of its law."""
     structure = Structure.of(model, FIRST_ORDER)
-    if len(structure.inextensible) or strain.any() or model.rods.plastic_rotation.any():
+    if len(structure.inextensible) or permanent.any():
         return False
     if (structure.with_translations().unknown != structure.unknown).any() or not len(structure.ends):
         return False
-    return FirstOrder(model, structure).held
+    return FirstOrder(model, _lasting(structure)).held
 
 
 @dataclass(frozen=True)
@@ -211,20 +215,21 @@ class Envelope:
 
     @classmethod
     def of(
-        cls, model: Model, names: Iterable[str], theory: str, factors: Sequence[float], strain: Column
+        cls, model: Model, names: Iterable[str], theory: str, factors: Sequence[float], permanent: Array
     ) -> Envelope:
         """That of some combinations of a model, all if none are named, by a theory, through load factors, of which the last
-        counts. strain: the plastic strain at the beginning. Raises ValueError, NoEquilibrium where none has a solution.
+        counts. permanent: plastic strains and rotations at the beginning, (rods, 3). Raises ValueError, and NoEquilibrium
+        where none has a solution.
         """
         known = model.settings.combinations
         for name in names:
             if name not in known:
-                raise WrongValue(missing(tr("combinations"), name, known))
+                raise FieldError(missing(tr("combinations"), name, known))
         chosen = {name: known[name] for name in list(names) or known}
         if not chosen:
-            raise WrongValue("The model has no combinations; give it some in settings.combinations.")
+            raise FieldError("The model has no combinations; give it some in settings.combinations.")
         parts: dict[str, States] = {}
-        if theory == FIRST_ORDER and _superposes(model, strain):
+        if theory == FIRST_ORDER and _superposes(model, permanent):
             found, true = States.superposed(model, chosen, factors[-1])
             parts = (
                 {name: found.some([k]) for k, name in enumerate(chosen) if true[k]} if not true.all() else {}
@@ -238,7 +243,7 @@ class Envelope:
                 copy.show(None)
                 choose(copy, None, name)
                 try:
-                    parts[name] = States.alone(copy, theory, factors, strain)
+                    parts[name] = States.alone(copy, theory, factors, permanent)
                 except NoEquilibrium as reason:
                     without[name] = str(reason)
             if not parts:

@@ -169,6 +169,22 @@ def test_slow_loads_find_the_moments_of_hinge_by_hinge_calculation_and_leave_its
     assert session.model.rods.bending_moment.ravel() == pytest.approx(left, abs=1e-3)
 
 
+def test_slow_runs_come_to_the_equilibria_of_statics() -> None:
+    """At one joint of two rods inertia decides which end turns: together they turn as in statics."""
+    document = portal(50.0, "velocity_verlet") | {"environment": {"drag": 60.0}}
+    for load in document["loads"]:
+        load |= {"history": RAMP | {"duration": 8.0}, "force": [1.04 * part for part in load["force"]]}
+    session, found = Session.open(document), Session.open(document).statics("exact").final
+    session.run(time=12.0)
+    assert session.model.particles.displacement == pytest.approx(found.displacement, abs=2e-6)
+    joints = [
+        [*(one[[1, 2], 1] - one[[2, 3], 0]), one[3, 1]]
+        for one in (session.model.rods.plastic_rotation, found.columns["rods.plastic_rotation"])
+    ]
+    assert joints[0] == pytest.approx(joints[1], abs=1e-6)
+    assert np.abs(joints[0]).min() > 1e-3
+
+
 def test_a_shaken_portal_keeps_residual_moments_of_least_energy_and_the_account_closes() -> None:
     document = portal(30.0)
     shaking = {"kind": "table", "times": [0, 0.2, 0.6, 1.0, 1.2], "factors": [0, 1.1, -1.1, 0.9, 0]}

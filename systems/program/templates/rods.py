@@ -90,7 +90,7 @@ def slipping(r, share, straight, slope_start, slope_end, nx, ny, *needed):
     """Slips of the ends of rod `r` beyond its plastic rotations, its moments as if they did not slip further, and N L₀.
 
     share: of the plastic moments that counts. straight: elongation of the chord. Slips follow from the axial force, and that
-    from the axis, which bows less for them: see systems/plasticity/hinges.py, of which slipped() is the same for one law.
+    from the axis, which bows less for them: one equation, see systems/plasticity/hinges.py.
     """
     rest = rods_rest_length[r]
     bow_start = rods_bowing[r, 0] * slope_start + rods_bowing[r, 1] * slope_end

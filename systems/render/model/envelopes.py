@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from pinjoint.components.bent import AXIAL, MOMENT
-from pinjoint.components.envelope import Envelope
 from pinjoint.systems.render.labels.occupancy import FAINT
 from pinjoint.systems.render.marks import Fills, Strokes
 from pinjoint.systems.render.model.diagrams import EXPLAINED, UNITS, baseline, crowding, diagram_room, stations
@@ -17,15 +18,16 @@ _NOTHING = 1e-3  # of the largest value: what is not told
 _MANY = 300  # rods, above which nothing is filled
 
 
-def draw_envelope(sheet: Sheet, envelope: Envelope, taken: float) -> None:
+def draw_envelope(sheet: Sheet, envelope: Any, taken: float) -> None:
     """The envelope of the quantity that diagrams show; taken: pixels at the top, off which it keeps."""
     quantity, every = sheet.view.quantity if sheet.is_frame else AXIAL, np.arange(sheet.model.rods.count)
-    least, most = envelope.along(quantity)
+    least, most = envelope.forces[quantity].values
     largest = max(float(np.abs(least).max(initial=0.0)), float(np.abs(most).max(initial=0.0)))
     if len(least) != len(every) or largest <= SMALLEST:
         return
     side = np.full(len(every), -1.0 if quantity == MOMENT else 1.0)
-    points, normals = stations(baseline(sheet, every), envelope.shares, side)
+    axes = baseline(sheet, every)
+    points, normals = stations(axes, envelope.shares[quantity], side)
     room = diagram_room(sheet, sheet.rod_length)
     per_pixel = max(crowding(sheet, points, normals, values, taken) for values in (least, most))
     scale = sheet.model.settings.diagram_scale / max(largest / room, per_pixel)
@@ -41,47 +43,38 @@ def draw_envelope(sheet: Sheet, envelope: Envelope, taken: float) -> None:
     ends = low[:, [0, -1]].reshape(-1, 2), high[:, [0, -1]].reshape(-1, 2)
     sheet.marks.append(Strokes(*ends, 0.8 * u, faded(colour, 0.4), ("rods", np.repeat(every, 2))))
     sheet.explain(EXPLAINED[quantity][0], *ends)
-    values, station, combination = envelope.extremes(quantity)
-    told = set[tuple[int, int, int]]()
-    for row, which in np.argwhere(np.abs(values) > max(_NOTHING * largest, SMALLEST)).tolist():
-        value, at = float(values[row, which]), int(station[row, which])
-        base, normal = points[row, at], normals[row, at]
-        edge = base + scale * value * normal
-        place = round(float(base[0])), round(float(base[1])), round(value / largest * 1e3)
-        if place in told:  # of another rod at the same joint
-            continue
-        told.add(place)
-        text = _written(sheet, quantity, value, envelope.names[combination[row, which]])
-        start = edge - np.copysign(12.0 * u, value) * normal
-        near = by_arrows(half_sizes(sheet, [text])[0], start, edge, 3.0 * u)
-        key = f"envelope.{quantity}", 2 * row + which
-        leads = np.array([edge]), np.copysign(1.0, value) * normal
-        owner = "rods", row
-        write(
-            sheet,
-            text,
-            near,
-            sheet.colour_of("text"),
-            key,
-            owner,
-            rank=FIRST - abs(value),
-            own=owner,
-            leads=leads,
-        )
+    told, nothing = set[tuple[int, int, int]](), max(_NOTHING * largest, SMALLEST)
+    for row in every.tolist():
+        for which, (value, distance, name) in enumerate(envelope.extremes(quantity, row)):
+            share = np.array([[distance / max(float(envelope.length[row]), 1e-300)]])
+            base, normal = (at[0, 0] for at in stations(axes.some(np.array([row])), share, side[[row]]))
+            place = round(float(base[0])), round(float(base[1])), round(value / largest * 1e3)
+            if abs(value) <= nothing or place in told:  # of another rod at the same joint
+                continue
+            told.add(place)
+            text = _told(said(sheet, abs(value) if quantity == MOMENT else value, UNITS[quantity]), name)
+            edge, way = base + scale * value * normal, np.copysign(1.0, value) * normal
+            near = by_arrows(half_sizes(sheet, [text])[0], edge - 12.0 * u * way, edge, 3.0 * u)
+            key, owner, leads = (
+                (f"envelope.{quantity}", 2 * row + which),
+                ("rods", row),
+                (np.array([edge]), way),
+            )
+            colour = sheet.colour_of("text")
+            write(sheet, text, near, colour, key, owner, rank=FIRST - abs(value), own=owner, leads=leads)
 
 
-def draw_enveloped_reactions(sheet: Sheet, envelope: Envelope) -> None:
+def draw_enveloped_reactions(sheet: Sheet, envelope: Any) -> None:
     """The least and the most of each reaction, beside its support."""
-    (least, most), (low, high) = envelope.of_reactions
-    largest = max(float(np.abs(envelope.reactions).max(initial=0.0)), SMALLEST)
-    names, nothing, u = envelope.names, _NOTHING * largest, sheet.unit
+    least, most = envelope.reaction.values
+    largest = max(float(np.abs(envelope.reaction.values).max(initial=0.0)), SMALLEST)
+    nothing, u = _NOTHING * largest, sheet.unit
     for row, axis in np.argwhere(np.maximum(np.abs(least), np.abs(most)) > nothing).tolist():
-        unit, both = ("kN·m" if axis == 2 else "kN"), [(most, high), (least, low)]
-        both = both if most[row, axis] - least[row, axis] > nothing else both[:1]
-        numbers = [said(sheet, float(of[row, axis]), unit) for of, _ in both]
-        told = [
-            f"{number} ({names[which[row, axis]]})" for number, (_, which) in zip(numbers, both, strict=True)
-        ]
+        sides = (1, 0) if most[row, axis] - least[row, axis] > nothing else (1,)
+        values = envelope.reaction.values[:, row, axis].tolist()
+        numbers = [said(sheet, values[side], "kN·m" if axis == 2 else "kN") for side in sides]
+        names = (envelope.named(envelope.reaction.governing[side, row, axis]) for side in sides)
+        told = [_told(number, name) for number, name in zip(numbers, names, strict=True)]
         text, short = (f"{'xyM'[axis]}: {' … '.join(parts)}" for parts in (told, numbers))
         at, half = sheet.centres[row], half_sizes(sheet, [text])[0]
         ways = np.array([(0.0, 1.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0)])
@@ -96,6 +89,6 @@ def draw_enveloped_reactions(sheet: Sheet, envelope: Envelope) -> None:
         sheet.explain("reaction", at[None], at[None])
 
 
-def _written(sheet: Sheet, quantity: str, value: float, name: str) -> str:
-    size = abs(value) if quantity == MOMENT else value
-    return f"{said(sheet, size, UNITS[quantity])} ({name})"
+def _told(number: str, name: str) -> str:
+    """A value, and which combination governs it, if one does."""
+    return f"{number} ({name})" if name else number
