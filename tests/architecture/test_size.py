@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 71_297,
+    "lines": 71_302,
     "files": 383,
     "names": 3_931,  # functions, classes and constants of modules
     "public names": 2_334,
     "numbers": 1_513,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 57_240,
+    "lines of tests": 57_255,
 }
 
 
