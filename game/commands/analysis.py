@@ -252,12 +252,13 @@ def _limit_load(model: Model, theory: str) -> Run:
     from pinjoint.collapse_steps import collapse_steps
     from pinjoint.systems.statics.limit_analysis import LimitLoad
 
-    steps = collapse_steps(model)
-    heads, *rows = steps.rows() if steps is not None else [()]
-    return {
-        "limit_load": LimitLoad.of(model).record(model),
-        "steps": [dict(zip(heads, row, strict=True)) for row in rows],
-    }
+    found: State = {"limit_load": LimitLoad.of(model).record(model), "steps": []}
+    if (steps := collapse_steps(model)) is not None:
+        heads, *rows = steps.rows()
+        found["steps"] = [
+            {"step": row[0], **dict(zip(map(str, heads[1:]), row[1:], strict=True))} for row in rows
+        ]
+    return found
 
 
 def _interrupted(simulation: Simulation, name: str, states: list[State]) -> Run:
