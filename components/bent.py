@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.cases import Acting
 from pinjoint.components.derived import (
     all_slopes,
     chord_rotation,
@@ -285,10 +286,15 @@ def inner_forces(model: Model, rows: Rows, quantity: str) -> Curves:
         thrust = 0.0 if model.first_order else rods.axial_force[:, None]
         found = moments_along(ends, between, state.left, state.length, thrust * cubic(*state.slopes.T))
         return found.some(rows)
-    x, y = state.left[between.row].T
-    across = between.size[:, 0] * x + between.size[:, 1] * y
-    size = across if quantity == SHEAR else between.size[:, 1] * x - between.size[:, 0] * y
-    return between.integrated(1, size, rods.count, 3).plus(ends[:, :1]).some(rows)
+    x, y = state.left.T
+    direction = state.left if quantity == SHEAR else np.stack([-y, x], axis=1)
+    return forces_along(ends[:, 0], between, direction).some(rows)
+
+
+def forces_along(start: Array, between: Kinks, direction: Array) -> Curves:
+    """V or N (kN) of all rods by their values at the starts; direction: to the left of the chords, or back along them."""
+    size = (between.size[:, :2] * direction[between.row]).sum(axis=1)
+    return between.integrated(1, size, len(start), 3).plus(start[:, None])
 
 
 def largest_sag(model: Model) -> float:
@@ -328,9 +334,18 @@ def curved_lines(model: Model, fineness: float, rows: Rows | None = None) -> Lin
     return Axes.of(model, rows).pieces(rows, fineness)
 
 
-def borne_between(model: Model) -> Array:
-    """What of the force (kN) on each particle acts between the ends of rods, (particles, 2)."""
-    rods, found, between = model.rods, np.zeros((model.particles.count, 2)), Kinks.of(model, model.share)
+def borne_between(model: Model, acting: Acting | None = None) -> Array:
+    """What of the force (kN) on each particle acts between the ends of rods, (particles, 2).
+
+    acting: combinations, of which these follow one another.
+    """
+    rods, count, between = (
+        model.rods,
+        1 if acting is None else len(acting.permanent),
+        Kinks.of(model, model.share, acting),
+    )
+    found = np.zeros((count, model.particles.count, 2))
     if len(between.row):
-        np.add.at(found, rods.between.ravel(), between.on_ends(rods.count).reshape(-1, 2))
-    return found
+        on_ends = between.on_ends(count * rods.count).reshape(count, -1, 2)
+        np.add.at(found.swapaxes(0, 1), rods.between.ravel(), on_ends.swapaxes(0, 1))
+    return found.reshape(-1, 2)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -127,18 +127,35 @@ def acting(world: World) -> str:
     return f"{named}: {' + '.join(parts) or '0'}".replace("+ −", "− ")
 
 
+class Acting(NamedTuple):
+    """Factors of what acts in k combinations: of fields of elements (k,), and of the loads of both tables, (k, loads)."""
+
+    permanent: NDArray[np.float64]
+    loads: NDArray[np.float64]
+    span_loads: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, world: World, *chosen: Mapping[str, float] | None) -> Acting:
+        """Those of some combinations; None: all cases once. None given: those of the one that is chosen in the model."""
+        every = chosen or (factors(world),)
+        if every == (None,):
+            return cls(np.ones(1), *(np.ones((1, world.tables[name].count)) for name in TABLES))
+        known = cases(world)
+        by = np.array([[1.0 if one is None else one.get(case, 0.0) for case in known] for one in every])
+        number = {case: place for place, case in enumerate(known)}
+        of_each = ([number[case] for case in world.tables[name].case] for name in TABLES)
+        return cls(by[:, 0], *(by[:, np.array(places, dtype=np.intp)] for places in of_each))
+
+
 def permanent(world: World) -> float:
     """The factor of what stands in fields of elements."""
-    found = factors(world)
-    return 1.0 if found is None else found.get(PERMANENT, 0.0)
+    return float(Acting.of(world).permanent[0])
 
 
 def factor_of_each(world: World, table: str) -> NDArray[np.float64]:
     """The factor of each load of a table, (loads,)."""
-    loads, found = world.tables[table], factors(world)
-    if found is None:
-        return np.ones(loads.count)
-    return np.array([found.get(case, 0.0) for case in loads.case], dtype=np.float64)
+    every: NDArray[np.float64] = getattr(Acting.of(world), table)[0]
+    return every
 
 
 def unknown_case(world: World) -> str:
@@ -154,15 +171,22 @@ def unknown_case(world: World) -> str:
     return ""
 
 
-def settled(world: World) -> NDArray[np.float64]:
-    """How far rigid supports are moved and turned, in statics: by displacements given and by loads, (particles, 3)."""
+def settled(world: World, acting: Acting | None = None) -> NDArray[np.float64]:
+    """How far rigid supports are moved and turned, in statics: by displacements given and by loads, (particles, 3).
+
+    acting: combinations, of which these follow one another.
+    """
     particles, loads = world.tables["particles"], world.tables["loads"]
-    moved = np.column_stack([particles.storage("displacement"), particles.storage("rotation")])
-    moved *= permanent(world)
-    if _settlements(world).any():
-        np.add.at(moved, loads.on, factor_of_each(world, "loads")[:, None] * _settlements(world))
-    turned = np.where(particles.fixed_rotation, moved[:, 2], 0.0)
-    return np.column_stack([of_rigid_supports(world, moved[:, :2]), turned])
+    acting = acting or Acting.of(world)
+    own = np.column_stack([particles.storage("displacement"), particles.storage("rotation")])
+    found = acting.permanent[:, None, None] * own
+    if (by_loads := _settlements(world)).any():
+        np.add.at(found.swapaxes(0, 1), loads.on, acting.loads.T[..., None] * by_loads[:, None])
+    found[..., 2] *= particles.fixed_rotation
+    for moved in found:
+        moved[:, :2] = of_rigid_supports(world, moved[:, :2])
+    every: NDArray[np.float64] = found.reshape(-1, 3)
+    return every
 
 
 def _settlements(world: World) -> NDArray[np.float64]:
@@ -194,8 +218,9 @@ def choose(world: World, case: str | None, combination: str | None) -> None:
         raise WrongValue("Choose a case or a combination, not both.")
     if case is not None:
         if case not in (known := cases(world)):
-            raise WrongValue(
+            raise FieldError(
                 "There is no load case '{name}'; choose one of {known}.", name=cut(case), known=", ".join(known)
             )
-        settings.combinations = {case: {case: 1.0}}
+        if case in settings.combinations:  # which means another thing by that name
+            settings.combinations = {case: {case: 1.0}}
     settings.combination = case or combination or ""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pinjoint.components.cases import SOURCES, factor_of_each, permanent
+from pinjoint.components.cases import SOURCES, Acting
 from pinjoint.components.field import Column, Field
 from pinjoint.components.load import SpanLoad, varying
 from pinjoint.components.particle import DEFAULT_MASS
@@ -59,22 +59,24 @@ def lengths(world: World) -> None:
     original[...] = np.hypot(difference[:, 0], difference[:, 1])
     rest = world.writable("rods.rest_length")
     rest[...] = _or_automatic(rods.prescribed_rest_length, original)
-    (own, by_loads), (gradient, more) = (
-        _warmth(world, "temperature_change"),
-        _warmth(world, "temperature_gradient"),
-    )
-    thermal_strain = rods.thermal_expansion * own
-    misfit = world.writable("rods.misfit")
-    misfit[...] = permanent(world) * (original - rest * (1.0 + thermal_strain))
-    misfit -= rest * rods.thermal_expansion * by_loads
-    world.writable("rods.free_curvature")[...] = -rods.thermal_expansion * (permanent(world) * gradient + more)
+    for name, values in unforced(world, original, rest, Acting.of(world)).items():
+        world.writable(f"rods.{name}")[...] = values[0]
 
 
-def _warmth(world: World, name: str) -> tuple[Column, Column]:
-    """What a temperature of rods is by their own Fields, and by loads of all cases, (rods,)."""
+def unforced(world: World, original: Column, rest: Column, acting: Acting) -> dict[str, Column]:
+    """Misfits and curvatures without force, by lack of fit and warmth, of rods of these lengths, (combinations, rods)."""
     rods, loads = world.tables["rods"], world.tables["span_loads"]
-    more = factor_of_each(world, "span_loads") * loads.column(name)
-    return rods.column(name), np.bincount(loads.rod, more, rods.count)
+    by_loads = np.zeros((2, len(acting.permanent), rods.count))
+    for found, name in zip(by_loads, ("temperature_change", "temperature_gradient"), strict=True):
+        np.add.at(found.T, loads.rod, acting.span_loads.T * loads.column(name)[:, None])
+    expansion, share = rods.thermal_expansion, acting.permanent[:, None]
+    misfit = (
+        share * (original - rest * (1.0 + expansion * rods.temperature_change)) - rest * expansion * by_loads[0]
+    )
+    return {
+        "misfit": misfit,
+        "free_curvature": -expansion * (share * rods.temperature_gradient + by_loads[1]),
+    }
 
 
 @derives(
@@ -145,8 +147,7 @@ def bending(world: World) -> None:
         world.writable("rods.end_stiffness")[...] = (stiffness / length)[:, None] * per_slope
         damping = _or_automatic(rods.bending_damping, rods.damping * stiffness / rods.stiffness)
         world.writable("rods.end_damping")[...] = damping[:, None] * per_slope
-        half = 0.5 * rods.free_curvature * length
-        world.writable("rods.initial_slopes")[...] = half[:, None] * (fixity > 0.0) * [-1.0, 1.0] + 0.0
+        world.writable("rods.initial_slopes")[...] = initial_slopes(rods.free_curvature, length, fixity)
     for name, values in of_ends.items():
         world.writable(f"rods.{name}")[...] = values
 
@@ -164,6 +165,12 @@ def by_fixity(fixity: Column) -> tuple[Column, dict[str, Column]]:
         "bowing": np.stack(bowing, axis=1) / 30.0 + 0.0,
         "turning_shares": shares,
     }
+
+
+def initial_slopes(curvature: Column, length: Column, fixity: Column) -> Column:
+    """Slopes of ends without moments of rods so curved (…, rods), by how firmly their ends are joined, (…, rods, 2)."""
+    found: Column = (0.5 * curvature * length)[..., None] * (fixity > 0.0) * [-1.0, 1.0] + 0.0
+    return found
 
 
 def own_slopes(fixity: Column) -> Column:
@@ -302,9 +309,9 @@ def constant_forces(world: World) -> None:
     with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
         acceleration = particles.acceleration + environment.acceleration
         force = particles.force + environment.force + particles.mass[:, None] * acceleration / 1000.0
-        force *= permanent(world)
-        by_case = factor_of_each(world, "loads")[:, None]
-        np.add.at(force, loads.on[constant], (by_case * loads.force)[constant])
+        acting = Acting.of(world)
+        force *= acting.permanent[0]
+        np.add.at(force, loads.on[constant], (acting.loads[0, :, None] * loads.force)[constant])
         if len((between := Kinks.of(world)).row):
             np.add.at(force, rods.between.ravel(), between.on_ends(rods.count).reshape(-1, 2))
     world.writable("particles.constant_force")[...] = force
@@ -315,8 +322,9 @@ def constant_moments(world: World) -> None:
     """Own moment and that of constant loads (kN·m)."""
     loads = world.tables["loads"]
     constant, moment = ~varying(loads), world.writable("particles.constant_moment")
-    moment[...] = permanent(world) * world.tables["particles"].moment
-    np.add.at(moment, loads.on[constant], (factor_of_each(world, "loads") * loads.moment)[constant])
+    acting = Acting.of(world)
+    moment[...] = acting.permanent[0] * world.tables["particles"].moment
+    np.add.at(moment, loads.on[constant], (acting.loads[0] * loads.moment)[constant])
 
 
 @derives("settings", "displacement_scale", "prescribed_displacement_scale automatic_displacement_scale")

@@ -194,6 +194,13 @@ class Rod(Handle):
     yielded_at: Field[float | None] = state(
         "s", nullable=True, absent="not yet", doc="When it first yielded in this run."
     )
+    hinge_formed_at: Field[Vector] = state(
+        "s",
+        shape=(2,),
+        axes=ENDS,
+        default=(-1.0, -1.0),
+        doc="When plastic hinges first formed at its ends in this run; −1: not yet.",
+    )
     stiffness: Field[float] = derived(
         "kN",
         default=DEFAULT_STIFFNESS,
@@ -572,6 +579,11 @@ def can_hinge(world: World) -> bool:
 def has_plastic_moments(world: World) -> bool:
     """True if some end of a rod has a plastic moment, whether plasticity is on or not."""
     return bool(np.isfinite(world.tables["rods"].moment_limit).any())
+
+
+def is_kinked(world: World) -> bool:
+    """True if some end of a rod has turned in a plastic hinge, or can."""
+    return can_hinge(world) or bool(world.tables["rods"].plastic_rotation.any())
 
 
 def has_strength(world: World) -> bool:

@@ -8,13 +8,14 @@ N and V gain along a rod, twice M, four times the deflection; against cubics of 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pinjoint.components.cases import factor_of_each, permanent
+from pinjoint.components.cases import Acting
 from pinjoint.components.field import Column
 from pinjoint.components.load import DIRECTIONS
 from pinjoint.components.world import World
@@ -98,23 +99,36 @@ class Kinks(NamedTuple):
     load: Rows
 
     @classmethod
-    def of(cls, world: World, share: float = 1.0) -> Kinks:
-        """Those of a model, of so much of its loads, each by the factor of its case."""
+    def of(cls, world: World, share: float = 1.0, acting: Acting | None = None) -> Kinks:
+        """Those of a model, of so much of its loads, each by the factor of its case.
+
+        acting: combinations, of which the rods follow one another.
+        """
+        found, acting = cls._of_all(world, share), acting or Acting.of(world)
+        by = np.column_stack([acting.span_loads, acting.permanent])[:, found.load]
+        if len(by) == 1 and (by == 1.0).all():
+            return found
+        combination, kink = np.nonzero(by)
+        row, place, order, size, load = (column[kink] for column in found)
+        row = combination * world.tables["rods"].count + row
+        return cls(row, place, order, by[combination, kink, None] * size, load)
+
+    @classmethod
+    def _of_all(cls, world: World, share: float) -> Kinks:
         rods = world.tables["rods"]
         if not world.tables["span_loads"].count:  # of which nothing needs to be sorted: a third of the time
             own = _pressed(rods.distributed_force)
             size = np.zeros((len(own), 3))
-            size[:, :2] = share * permanent(world) * rods.distributed_force[own] * rods.rest_length[own, None]
+            size[:, :2] = share * rods.distributed_force[own] * rods.rest_length[own, None]
             return cls(own, np.zeros(len(own)), np.zeros_like(own), size, np.full(len(own), -1))
         row, start, end, force, moment, first, last, load = Spans.of(world)
-        acts = share * np.append(factor_of_each(world, "span_loads"), permanent(world))[load, None]
-        per_share = acts * rods.rest_length[row, None] * (end > start)[:, None]
+        per_share = share * rods.rest_length[row, None] * (end > start)[:, None]
         growth = np.divide(
             last - first, (end - start)[:, None], out=np.zeros_like(first), where=per_share != 0.0
         )
         parts = (
             (-2, start, np.zeros_like(force)),
-            (-1, start, acts * force),
+            (-1, start, share * force),
             (0, start, per_share * first),
             (1, start, per_share * growth),
             (0, end, -per_share * last),
@@ -123,7 +137,7 @@ class Kinks(NamedTuple):
         order = np.repeat([part[0] for part in parts], len(row))
         place = np.concatenate([part[1] for part in parts])
         size = np.pad(np.concatenate([part[2] for part in parts]), ((0, 0), (0, 1)))
-        size[: len(row), 2] = -acts[:, 0] * moment
+        size[: len(row), 2] = -share * moment
         acting = np.flatnonzero(size.any(axis=1) & ((place < 1.0) | (order < 0)))
         whose = acting % max(len(row), 1)
         acting = acting[np.lexsort((order[acting], place[acting], row[whose]))]
@@ -242,6 +256,18 @@ class Curves:
         """Polynomials alone."""
         none = np.zeros(0, dtype=np.intp)
         return cls(polynomials, none, np.zeros(0), none, np.zeros(0))
+
+    @classmethod
+    def together(cls, every: Sequence[Curves]) -> Curves:
+        """Those of several, one after the other."""
+        width = max(one.polynomials.shape[1] for one in every)
+        before = np.cumsum([0, *map(len, every[:-1])])
+        polynomials = [
+            np.pad(one.polynomials, ((0, 0), (0, width - one.polynomials.shape[1]))) for one in every
+        ]
+        rows = [one.row + first for one, first in zip(every, before.tolist(), strict=True)]
+        kinks = (np.concatenate([one._kinks[part] for one in every]) for part in (1, 2, 3))
+        return cls(np.concatenate(polynomials), np.concatenate(rows), *kinks)
 
     def __len__(self) -> int:
         return len(self.polynomials)

@@ -393,7 +393,7 @@ class App:
                 self.window.maximize()
 
     def screenshot(self, suffix: str = ".png") -> str:
-        """Save the model as the window shows it, without panels and bars, in the working folder; returns the path.
+        """Save the model as the window shows it, without panels and bars, in a folder of `_pictures`; returns the path.
 
         Where the window shows no model, all that it shows is saved, as a PNG. Raises OSError.
         """
@@ -404,18 +404,24 @@ class App:
             if isinstance(model, Model) and view.card is None
         ]
         if not drawn:
-            path = _unused(Path.cwd() / "pinjoint.png")
+            path = _unused(_pictures() / "pinjoint.png")
             models.replace(path, encoded(self.render.surface, ".png"))
             return str(path)
-        path = _unused(Path.cwd() / f"pinjoint{suffix}")
+        path = _unused(_pictures() / f"pinjoint{suffix}")
         write(drawn, path, self.render.surface.get_size(), self.session.view.theme)
         return str(path)
 
     def save(self, name: str, contents: bytes) -> str:
-        """Save a file in the working folder under this name, or one like it that is free; returns the path."""
-        path = _unused(Path.cwd() / name)
+        """Save a file beside pictures under this name, or one like it that is free; returns the path."""
+        path = _unused(_pictures() / name)
         models.replace(path, contents)
         return str(path)
+
+
+def _pictures() -> Path:
+    """The folder that the person chose, else that in which the program was started."""
+    chosen = library.chosen_folder()
+    return chosen if chosen is not None and chosen.is_dir() else Path.cwd()
 
 
 def _unused(path: Path) -> Path:

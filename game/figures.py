@@ -23,6 +23,7 @@ from pinjoint.systems.render.model.arrows import largest_force
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import Theme, load_theme
 from pinjoint.systems.render.typography import text_width
+from pinjoint.systems.statics.envelope import Envelope
 from pinjoint.systems.statics.equations import largest
 from pinjoint.tables import Table
 
@@ -87,8 +88,9 @@ def figure(
     moved: bool = False,
     grows: bool = False,
     over: Shape | None = None,
+    enveloped: Envelope | None = None,
 ) -> Block:
-    """A picture of a model, with the diagrams of a quantity, and a shape over it.
+    """A picture of a model, with the diagrams of a quantity or their envelope, and a shape over it.
 
     row: how many figures stand in a row; 0: by its shape. unit: pixels per point of its texts. measured: with its
     dimensions and all names. moved: so that displacements are well seen, by which factor the caption says; else undeformed.
@@ -102,7 +104,7 @@ def figure(
         across, tall = ROOMS[wide > high]
         rooms += [(WIDTH, _PART * ROOMS[0][1], _SPARE), (across, tall - _CAPTION, 2.0 * _SPARE)]
     view = View(legend=False, has_scale=False, all_diagrams=diagrams is not None, quantity=diagrams or AXIAL)
-    view.names, view.shape = measured, over
+    view.names, view.shape, view.enveloped = measured, over, enveloped
     view.cuts, view.has_units, view.pixel_ratio = tuple(cuts), has_units, unit
     pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
     model.settings.diagram_scale = scale_to(_DIAGRAM, pulled)

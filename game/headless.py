@@ -39,6 +39,7 @@ from pinjoint.systems.schedule import Schedule
 if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.buckling import Buckling
     from pinjoint.systems.statics.displacement_method import Solution as DisplacementSolution
+    from pinjoint.systems.statics.envelope import Envelope
     from pinjoint.systems.statics.force_method import Solution as ForceSolution
     from pinjoint.systems.statics.path import Curve
     from pinjoint.systems.statics.settle import Settlement
@@ -258,6 +259,17 @@ class Headless(Context):
             acting = self.model.undeformed_copy()
             choose(acting, case, combination)
         return self.document.statics.settled(theory, load_factors, acting)
+
+    def envelope(self, *combinations: str, theory: str | None = None) -> Envelope:
+        """The least and the most of N, V, M, reactions and displacements in some combinations of load cases, and in which.
+
+        None named: in all of settings.combinations; theory None: as the settings say. Changes nothing. At the stations
+        shares["M"] (rods, s) along rods, forces["M"].values (2, rods, s) are the least and the most, in kN, kN·m, and
+        .governing the number of the combination in `combinations`, −1 where all are alike; so are reaction and displacement
+        (2, particles, 3), with moments and rotations. extremes("M", row): both of a rod, with distance and combination.
+        without: combinations without equilibrium, and why. Raises ValueError, NoEquilibrium where none has one.
+        """
+        return self.document.statics.envelope(combinations, theory)
 
     def force_method(self, *released: str) -> ForceSolution:
         """The static unknowns of these names, such as "AC", "A.y" or "AB.start", by the force method; changes nothing.

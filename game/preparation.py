@@ -164,6 +164,13 @@ class Preparation(System, Readiness):
 
     # --- what waits ----------------------------------------------------------------------------------
 
+    @property
+    def readies(self) -> bool:
+        modules = (work.module for work in self.elsewhere.needed if not work.problem)
+        return self.elsewhere.can_load and any(
+            module is not None and not module.is_loaded for module in modules
+        )
+
     def waits_for(self, simulation: Simulation) -> Waiting | None:
         self._needed[simulation] = None
         if self._asked is Compile.NEVER:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from pinjoint.components.bent import MOMENT, deflections, inner_forces
+from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, deflections, inner_forces
 from pinjoint.components.derived import chord_rotation, on_axis, rigid_slopes
 from pinjoint.components.field import CM, ENDS, MOVED
-from pinjoint.components.language import tr
+from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle, in_support_axes, supported, turned_supports
 from pinjoint.components.rod import (
@@ -28,7 +29,7 @@ from pinjoint.components.rod import (
 from pinjoint.components.spans import extremes
 from pinjoint.components.wording import as_said
 from pinjoint.components.written import ROUNDING
-from pinjoint.tables import Array, Column, Table
+from pinjoint.tables import Array, Column, Table, Words
 
 _KN, _KNM, _MRAD, _PERCENT = ("kN", 1.0), ("kN·m", 1.0), ("mrad", 1e3), ("%", 100.0)
 _ALL_NOTHING = 1e-3  # m, kN, kN·m, rad: numbers that are all smaller than the share ROUNDING of it are rounding
@@ -59,6 +60,46 @@ class Results:
         sums = _sums(model, place, bowed, force, moment)
         length = rods.original_length if first_order else rods.length
         return cls(_of_rods(model, length, force, moment), _of_particles(model, force, moment), sums)
+
+
+def envelope_of_rods(model: Model, envelope: Any) -> Table:
+    """The most and the least of N, and where rods bend of V and M, in every rod, and in which combination."""
+    columns = list[Column]()
+    for quantity, title in ((AXIAL, "N"), *(((SHEAR, "V"), (MOMENT, "M")) if bends(model) else ())):
+        bounds = [envelope.extremes(quantity, row) for row in range(model.rods.count)]
+        values = np.array([[one.value for one in both] for both in bounds]).reshape(-1, 2).T
+        names = [[one.combination for one in both] for both in zip(*bounds, strict=True)]
+        columns += _governed(title, title, _KNM if quantity == MOMENT else _KN, values, names)
+    return Table(tr("rod"), [as_said(Rod.noun, name) for name in model.rods.names], columns)
+
+
+def envelope_of_reactions(model: Model, envelope: Any) -> Table:
+    """The most and the least of each reaction, and in which combination."""
+    bounds, columns, held = envelope.reaction, list[Column](), supported(model)
+    values = np.where(held & (rigid_joints(model)[:, None] | [True, True, False]), bounds.values, np.nan)
+    for axis, (title, unit) in enumerate(
+        ((tr("reaction x"), _KN), (tr("reaction y"), _KN), (tr("moment"), _KNM))
+    ):
+        if not np.isnan(values[..., axis]).all():
+            names = [
+                [envelope.named(number) for number in side] for side in bounds.governing[..., axis].tolist()
+            ]
+            columns += _governed(f"reaction_{axis}", title, unit, values[..., axis], names)
+    return Table(tr("particle"), [as_said(Particle.noun, name) for name in model.particles.names], columns)
+
+
+def _governed(
+    key: str, title: str, unit: tuple[str, float], values: Array, names: Sequence[Sequence[str]]
+) -> list[Column]:
+    """Columns of the most and the least, (2, n), each followed by that of the combinations which govern."""
+    found, size = list[Column](), _largest(values)
+    for side, end in ((1, marked("max")), (0, marked("min"))):
+        known = [
+            name * (value == value) for name, value in zip(names[side], values[side].tolist(), strict=True)
+        ]
+        found.append(_column(f"{key}_{end}", f"{title} {tr(end)}", unit, values[side], size))
+        found.append(Words(tr("in"), known, key=f"{key}_{end}_in"))
+    return found
 
 
 def _of_rods(model: Model, length: Array, force: float, moment: float) -> Table:

@@ -9,7 +9,8 @@ import numpy as np
 from reportlab.platypus import CondPageBreak, Flowable, KeepTogether
 
 from pinjoint.components.bent import AXIAL
-from pinjoint.components.language import joined, tr
+from pinjoint.components.cases import acting
+from pinjoint.components.language import joined, listed, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
@@ -18,7 +19,7 @@ from pinjoint.components.view import Shape
 from pinjoint.documents.models import document, load
 from pinjoint.documents.statics import Statics
 from pinjoint.figures import diagram_titles, figure, printed, shape, signs
-from pinjoint.results import Results
+from pinjoint.results import Results, envelope_of_reactions, envelope_of_rods
 from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.render.backends.paper import LAYOUTS, Block, Layout, as_paper, in_rows
 from pinjoint.systems.statics.state import Start
@@ -34,12 +35,14 @@ class NoSheet(Mistake, ValueError):
     """A structure without a static solution; the message gives the reason."""
 
 
-def sheet(model: Model, theory: str = FIRST_ORDER, shapes: Sequence[Shape] = ()) -> bytes:
+def sheet(
+    model: Model, theory: str = FIRST_ORDER, shapes: Sequence[Shape] = (), *, enveloped: bool = False
+) -> bytes:
     """The sheet of a model, solved from its undeformed beginning, as a PDF file. Raises NoSheet.
 
-    shapes: drawn over it, too, such as influence lines.
+    shapes: drawn over it, too, such as influence lines. enveloped: with the envelope of all combinations, or ValueError.
     """
-    solved = Solved(model, theory)
+    solved = Solved(model, theory, enveloped=enveloped)
     return as_paper(
         solved.title, partial(contents, solved, shapes=shapes), f"Pinjoint · {solved.title}", LAYOUTS[:2]
     )
@@ -48,7 +51,7 @@ def sheet(model: Model, theory: str = FIRST_ORDER, shapes: Sequence[Shape] = ())
 class Solved:
     """A copy of a model that shows its static solution, whatever the model shows, with the tables of it."""
 
-    def __init__(self, model: Model, theory: str) -> None:
+    def __init__(self, model: Model, theory: str, *, enveloped: bool = False) -> None:
         self.title = tr(model.title) if model.title else tr("Structure")
         if not model.rods.count:
             raise NoSheet("The model has no rods, so there is no structure to solve.")
@@ -65,6 +68,7 @@ class Solved:
         self.said = joined([settlement.message, note])
         copy.show(statics)
         self.results = Results.of(copy)
+        self.envelope = statics.envelope() if enveloped else None
 
 
 def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> list[Flowable]:
@@ -75,12 +79,18 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
     theory = tr("Statics by first-order theory: equilibrium about the original shape.")
     if not model.first_order:
         theory = tr("Statics in exact geometry: equilibrium of the deformed shape.")
+    told = acting(model)
     figures = [draw(tr("Dimensions (m), supports and loads"), measured=True)]
     for quantity, title in diagram_titles().items():
         if bends(model) or quantity == AXIAL:
             figures.append(draw(title, diagrams=quantity))
     figures.append(draw(tr("Deflected shape"), moved=True))
     figures += [draw(shape.title, over=shape) for shape in shapes]
+    if (envelope := solved.envelope) is not None:
+        for quantity, title in diagram_titles().items():
+            if bends(model) or quantity == AXIAL:
+                caption = tr("Envelope of {names}: {title}", names=listed(envelope.combinations), title=title)
+                figures.append(draw(caption, diagrams=quantity, enveloped=envelope))
     large = [block for block in figures if block[1][0].fills_page]
     tables = {
         tr("Rods"): _members(layout, solved),
@@ -88,13 +98,18 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
         tr("Joints"): printed(layout, results.particles),
         tr("Sums"): printed(layout, results.sums),
     }
+    if envelope is not None:
+        tables[tr("Envelope")] = printed(layout, envelope_of_rods(model, envelope))
+        tables[tr("Envelope of reactions")] = printed(layout, envelope_of_reactions(model, envelope))
     below = [(layout.text(title, "heading"), blocks) for title, blocks in tables.items()]
     if model.rods.count <= _BESIDE:
         title, [(width, parts), *_] = below.pop(0)
         figures.append((width, [title, *parts]))
     return [
         layout.text(solved.title, "title"),
-        layout.text(f"{theory} {signs(model)}", "subtitle"),
+        layout.text(
+            joined([theory, signs(model), told and tr("What acts: {acting}.", acting=told)]), "subtitle"
+        ),
         *([layout.text(solved.said)] if solved.said else []),
         *in_rows([block for block in figures if block not in large]),
         *(part for title, blocks in below for part in _under(title, blocks)),

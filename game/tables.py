@@ -67,6 +67,11 @@ class Column:
         return self._decimals
 
     @property
+    def plain(self) -> list[Any]:
+        """What stands in the rows, for programs; None where there is none."""
+        return [None if value != value else value for value in self.values.tolist()]
+
+    @property
     def head(self) -> str:
         """Title and unit."""
         return f"{self.title} ({self.unit})" if self.unit else self.title
@@ -85,6 +90,21 @@ class Column:
         if not self._alike:
             return written.number(value, self._digits)
         return decimals(f"{round(value, self._decimals) + 0.0:.{self._decimals}f}".replace("-", "−"))
+
+
+class Words(Column):
+    """A word in each row, by whose letters rows are ordered."""
+
+    def __init__(self, title: str, words: Sequence[str], *, key: str) -> None:
+        super().__init__(title, "", np.unique(words, return_inverse=True)[1].astype(np.float64), key=key)
+        self._words = words
+
+    @property
+    def plain(self) -> list[Any]:
+        return list(self._words)
+
+    def text(self, row: int) -> str:
+        return self._words[row]
 
 
 class Table(Sequence[tuple[str, ...]]):
@@ -121,6 +141,4 @@ class Table(Sequence[tuple[str, ...]]):
         said = (f"{titles[k - 1]} {t}" if titles.count(t) > 1 else t for k, t in enumerate(titles))
         heads = (f"{title} ({column.plain_unit})" for title, column in zip(said, self.columns, strict=True))
         yield self.corner, *(head.removesuffix(" ()") for head in heads)
-        columns = [column.values.tolist() for column in self.columns]
-        for name, *values in zip(self.names, *columns, strict=True):
-            yield name, *(None if value != value else value for value in values)
+        yield from zip(self.names, *(column.plain for column in self.columns), strict=True)

@@ -180,7 +180,9 @@ class Law(StepSystem):
         (m/s, its rate); columns of the particles come as pairs, of the first and of the second.
     each = "ends": maps the slopes of a rod's ends to its chord (`slope_start`, `slope_end`, rad) to the moments on its
         ends (M_start, M_end), counter-clockwise. Provided is also `axial_force`, which adds moments by the bow of the axis
-        by itself. Laws with `rate_start` or `rate_end` (rad/s, of the slopes) add up beside the others.
+        by itself. Laws with `rate_start` or `rate_end` (rad/s, of the slopes) add up beside the others. One that takes
+        `moment_start` and `moment_end`, the sum of all, tells instead how far the ends slip in plastic hinges (rad);
+        `limit_start`, `limit_end` (kN·m) and `thrust` (N L₀) are provided to it.
     each = "rotations": maps one particle's values to a moment that resists its turning.
     each = "loads": `factor(time, values, first)`; `arrays` gives `<name>_on`, `_force`, `_values`, `_first`.
     account: where the energy goes that the law's force takes from the motion; of a law that takes `axial_force`, the
@@ -213,8 +215,9 @@ class Commit(StepSystem):
     """History of one rod, brought up to date once per accepted step, and before the first after an edit.
 
     The kernel maps scalars of one rod (`elongation`, `axial_force` and `dt` provided; 0 s after an edit) to
-    (the new value of the one column in `writes`, the energy dissipated in kN·m). Those that take the axial
-    force come after the others.
+    (the new value of the one column in `writes`, the energy dissipated in kN·m); of a column with a number for each end to
+    (at the start, at the end, energy). Those that take the axial force come after the others. Where plastic hinges can form,
+    `slip_start`, `slip_end` (rad, beyond the plastic rotations) are provided, and `moment_start`, `moment_end` without them.
 
     branch, margin: kernels by which integrators locate events where the rod's law is not smooth; "": none.
         branch(elongation, rate, …) is the number of the branch of the law that the rod is about to follow;

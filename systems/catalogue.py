@@ -21,7 +21,7 @@ from pinjoint.systems.physics.system import (
     Slackness,
     TurningDrag,
 )
-from pinjoint.systems.plasticity.system import FirstYield, Strength, Yielding
+from pinjoint.systems.plasticity.system import FirstHinges, FirstYield, Hinges, Strength, Turning, Yielding
 from pinjoint.systems.schedule import Schedule
 
 
@@ -41,6 +41,9 @@ def step_systems() -> list[StepSystem]:
         Strength(),
         Yielding(),
         FirstYield(),
+        Hinges(),
+        Turning(),
+        FirstHinges(),
         Collision(),
         *(VaryingLoads(kind) for kind in HISTORIES.values() if kind.name != CONSTANT["kind"]),
     ]

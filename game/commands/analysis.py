@@ -221,6 +221,7 @@ class Analysis:
 
     def run_in(self, session: Headless, name: str) -> Run:
         """A run through time in a session, which adds remarks of theory and its measured error."""
+        from pinjoint.documents.chronicle import hinge_records
         from pinjoint.systems.run.measured_error import IN_A_COMMAND
 
         reported: list[State] = []
@@ -238,7 +239,7 @@ class Analysis:
         return {
             **found,
             "message": joined([session.message, unknown]),
-            "events": [*happened, *remarks],
+            "events": [*hinge_records(session.model), *happened, *remarks],
             "error_estimate": error.record(bent=bends(session.model)) if error is not None else None,
         }
 

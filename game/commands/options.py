@@ -54,6 +54,13 @@ def add_model(parser: argparse.ArgumentParser) -> None:
     )
     option(
         parser,
+        "--combination NAME",
+        "let a combination of load cases of its settings act, or one case alone",
+        "settings.combination={}".format,
+        **change,
+    )
+    option(
+        parser,
         "--set PATH=VALUE",
         "change a value of the model first, such as particles.B.force=120,-160 or rods.*.damping=0;"
         " may be given several times",

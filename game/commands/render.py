@@ -17,6 +17,7 @@ from pinjoint.commands.analysis import FOUND
 from pinjoint.commands.arguments import Parser, UsageError, flag, option, positive
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, session_of
 from pinjoint.commands.output import writable, writing
+from pinjoint.components.bent import MOMENT
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.view import drawn_places
@@ -128,8 +129,9 @@ def _parser() -> Parser:
     option(
         shape,
         "--influence NAME",
-        "also draw an influence line: of AB, AB.start, AB.end, AB.shear, AB.M@1.5 (also N, V; 50%), A.y or B.rotation",
+        "also draw an influence line: of AB, AB.start, AB.end, AB.shear, AB.M@1.5 (also N, V; 50 %%), A.y or B.rotation",
     )
+    flag(parser, "--envelope", "with --static: the envelope of all combinations of load cases")
     option(parser, "--theme", "the colours; default light", choices=theme_names(), default="light")
     option(
         parser,
@@ -168,6 +170,7 @@ def _check_static(options: argparse.Namespace) -> None:
     """Raise UsageError where an option does not go with statics."""
     shapes = {True: "--undeformed", False: "--deformed", None: ""}
     option = "--theory" if options.theory is not None else shapes[options.undeformed]
+    option = option or "--envelope" * options.envelope
     if option and not options.static:
         raise UsageError("{option} works only together with --static; add it.", option=option)
     moving = options.until_rest or options.at is not None or options.output.lower().endswith(".gif")
@@ -202,6 +205,9 @@ def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) 
     status = "time reached"
     if options.static:
         status = _solve(session, options)
+        session.view.envelope = options.envelope
+        if options.envelope and options.diagrams_of is None:
+            session.view.quantity = MOMENT
     elif options.until_rest:
         status = session.run(until="rest", limit=options.limit)
     elif options.at is not None:

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from pinjoint.commands import envelope
 from pinjoint.commands.analysis import FOUND, INTERRUPTED, Run, State
-from pinjoint.commands.arguments import Parser, flag, option
+from pinjoint.commands.arguments import Parser, UsageError, flag, option
 from pinjoint.commands.options import (
     ANSWERED,
     NOT_ANSWERED,
@@ -19,6 +20,7 @@ from pinjoint.commands.options import (
     model_of,
 )
 from pinjoint.commands.output import Row, add_output, aligned, as_written, writable, write, write_result
+from pinjoint.components.cases import choose
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import marked, several, tr
 from pinjoint.components.particle import Particle
@@ -52,13 +54,23 @@ def command(words: Sequence[str]) -> int:
     flag(
         parser, "--measure-error", "measure the error by a second run with finer steps, even if that takes long"
     )
+    option(parser, "--case NAME", "let one load case act alone")
+    flag(parser, "--envelope", "with --static: the least and the most in all combinations of load cases")
     options = parser.parse_args(words)
     analysis = replace(analysis_of(options), measures_error=options.measure_error)
+    if options.envelope and not options.static:
+        raise UsageError("{option} works only together with --static; add it.", option="--envelope")
     if analysis.load_factors is not None:
         model = model_of(options)
+        if options.case is not None:
+            choose(model, options.case, None)
+        if options.envelope:
+            return envelope.answer(options, model, analysis)
         found, impacts = analysis.settled_in(model, options.model), Impacts(model)
     else:
         session = headless_of(options)
+        if options.case is not None:
+            choose(session.model, options.case, None)
         found, impacts = analysis.run_in(session, options.model), session.impacts
     write_result(options, found, rows, lines)
     if options.events is not None:

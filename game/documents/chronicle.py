@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import written
-from pinjoint.components.field import Column, Role
+from pinjoint.components.field import ENDS, Column, Role
 from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.load import load_factor
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.obstacles import obstacles
-from pinjoint.components.rod import can_yield, has_cables, has_struts
+from pinjoint.components.rod import can_hinge, can_yield, has_cables, has_struts
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.run.simulation import Simulation
 
@@ -30,8 +31,8 @@ TOLD, MOST_TOLD = 5.0, 2  # s for which a person is told of something, and of ho
 class Happening:
     """Something that happened in a run.
 
-    kind: "yield", "collapse", "snap-through", "slack", "buckling", "impact", "impacts" (those that are only counted, as of
-    the last), "rest", "diverged", or the name of an event of a mod.
+    kind: "yield", "hinge", "collapse", "snap-through", "slack", "buckling", "impact", "impacts" (those that are only
+    counted, as of the last), "rest", "diverged", or the name of an event of a mod.
     time: s. message: a sentence. elements: names of those concerned. load_factor: that of the loads then, if they share one.
     """
 
@@ -77,6 +78,7 @@ class Chronicle:
         now = self._model.clock.time
         found = [
             *self._yields(),
+            *self._hinges(),
             *self._events(),
             *self._impacts(),
             *(seen for seen in self._seen if seen.time <= now),
@@ -129,6 +131,18 @@ class Chronicle:
             found.append(self._happening("yield", time, said, some))
         self._yielded = at.copy(), found
         return found
+
+    def _hinges(self) -> list[Happening]:
+        """Particles at which plastic hinges first formed, those of one instant together."""
+        found: dict[float, dict[str, None]] = {}
+        for record in hinge_records(self._model):
+            found.setdefault(record["time"], {})[record["particle"]] = None
+        return [
+            self._happening(
+                "hinge", time, tr("A plastic hinge forms at {particles}.", particles=_listed(list(at))), (*at,)
+            )
+            for time, at in found.items()
+        ]
 
     def _events(self) -> list[Happening]:
         """Events that systems of mods declared."""
@@ -232,6 +246,25 @@ class Chronicle:
             self._see("collapse", said, time=float(at))
         elif not len(yielding) and not any(seen.kind == "collapse" for seen in self._seen):
             self._see("snap-through", tr("The structure snaps through into another shape."))
+
+
+def hinge_records(model: Model) -> list[dict[str, Any]]:
+    """The plastic hinges that formed at ends of rods in this run, as JSON tells them, in order of time."""
+    if not can_hinge(model):
+        return []
+    rods, names = model.rods, model.particles.names
+    at = rods.hinge_formed_at
+    order = np.argwhere(at >= 0.0)[np.argsort(at[at >= 0.0], kind="stable")]
+    return [
+        {
+            "kind": "hinge",
+            "time": float(at[row, end]),
+            "particle": names[rods.between[row, end]],
+            "rod": rods.names[row],
+            "end": ENDS[end],
+        }
+        for row, end in order.tolist()
+    ]
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -1,4 +1,4 @@
-"""Library: the models that a person saved, by name, in a folder of their own."""
+"""Library: the models that a person saved, by name, in a folder of their own, or one that they chose."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ from pinjoint.components import wording
 from pinjoint.components.form import fits_file_names
 from pinjoint.components.language import plural, tr
 from pinjoint.components.mistake import Explained
-from pinjoint.documents import models
+from pinjoint.documents import models, preferences
 
 DATA_VARIABLE = "PINJOINT_DATA"  # names another folder than the system's own
+_PLACES = "places.json"  # the file that tells which folder was chosen
 _LONGEST_NAME = 100  # characters
 MOST_BYTES = 200  # in UTF-8; file systems take 255, with what is added to a name
 _KEPT_BY_WINDOWS = {
@@ -55,9 +56,53 @@ def data_in(folder: Path | None = None) -> Iterator[Path]:
                 os.environ[DATA_VARIABLE] = before
 
 
+def own_folder() -> Path:
+    """Where saved models lie if no other folder was chosen; it need not exist yet."""
+    return data_folder() / "models"
+
+
+def chosen_folder() -> Path | None:
+    """The folder that the person chose for models and pictures; None if they chose none."""
+    said = preferences.read(data_folder() / _PLACES).get("folder")
+    return Path(said) if isinstance(said, str) and Path(said).is_absolute() else None
+
+
 def models_folder() -> Path:
     """Where saved models lie; it need not exist yet."""
-    return data_folder() / "models"
+    return chosen_folder() or own_folder()
+
+
+def choose_folder(typed: str, *, make: bool) -> None:
+    """Let models and pictures lie in a folder from now on; "": where they would without one. make: it may be new.
+
+    Raises NameRefused.
+    """
+    try:
+        folder = Path(typed.strip()).expanduser() if typed.strip() else own_folder()
+        if not folder.is_absolute():
+            raise NameRefused(
+                "{folder} is only a part of a path; write all of it, like {example}.",
+                folder=typed,
+                example=own_folder(),
+            )
+        if folder != own_folder() and not make and not folder.is_dir():
+            raise NameRefused(
+                "There is no folder {folder}; correct it, or save a model there first.", folder=folder
+            )
+        if make:
+            folder.mkdir(parents=True, exist_ok=True)
+    except (
+        OSError,
+        RuntimeError,
+        ValueError,
+    ) as error:  # such as of an unknown user's ~, or a character that none has
+        if isinstance(error, NameRefused):
+            raise
+        reason = getattr(error, "strerror", None) or str(error)
+        raise NameRefused(
+            "The folder {folder} cannot be used: {reason}. Write another one.", folder=typed, reason=reason
+        ) from None
+    preferences.keep(data_folder() / _PLACES, "folder", "" if folder == own_folder() else str(folder))
 
 
 def path_of(name: str) -> Path:

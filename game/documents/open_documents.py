@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pinjoint.components.clock import PersistentContacts
-from pinjoint.components.field import SAVED, Column
+from pinjoint.components.field import SAVED, Column, Role
 from pinjoint.components.language import joined, plural, tr
 from pinjoint.components.load import load_ends
 from pinjoint.components.model import Model
@@ -32,6 +32,9 @@ from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.run.real_time import RealTimeRunner
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
+
+if TYPE_CHECKING:  # statics takes a tenth of a second to import
+    from pinjoint.systems.statics.envelope import Envelope
 
 Source = str | Path | Mapping[str, Any]  # of a model: a file, the name of a bundled one, or its content
 
@@ -81,6 +84,7 @@ class OpenDocument:
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
         self.statics = Statics(model, self._permanent_undeformed)
+        self._enveloped: tuple[int, Envelope | None] = -1, None
         self.exaggeration = Exaggeration(model)
         self.chronicle = Chronicle(model, self.simulation)
         self.file = file
@@ -102,6 +106,16 @@ class OpenDocument:
     def at_beginning(self) -> bool:
         """True if no time has passed, or restarting took it back."""
         return self.beginning is None or not self.simulation.passed_since(self.beginning)
+
+    @property
+    def envelope(self) -> Envelope:
+        """That of all combinations in statics, found anew after an edit. Raises ValueError."""
+        revision = self.model.newest(Role.DOCUMENT)
+        if self._enveloped[0] != revision or self._enveloped[1] is None:
+            self._enveloped = revision, self.statics.envelope()
+        found = self._enveloped[1]
+        assert found is not None
+        return found
 
     @property
     def is_undeformed(self) -> bool:

@@ -29,6 +29,7 @@ from pinjoint.documents.shapes import last_motion
 from pinjoint.systems.statics.behind import Behind
 
 if TYPE_CHECKING:  # statics takes a tenth of a second to import
+    from pinjoint.systems.statics.envelope import Envelope
     from pinjoint.systems.statics.second_order import SecondOrder
     from pinjoint.systems.statics.settle import Settlement
     from pinjoint.systems.statics.state import StaticState
@@ -229,6 +230,14 @@ class Statics:
         model, settings = acting or self._model, self._model.settings
         factors = settings.load_steps if load_factors is None else load_factors
         return settle(model, factors, theory or settings.theory, Start.undeformed(model, self._permanent()))
+
+    def envelope(self, names: Sequence[str] = (), theory: str | None = None) -> Envelope:
+        """Bounds of what these combinations do, all there are if none is named, by a theory. Raises ValueError."""
+        from pinjoint.systems.statics.envelope import Envelope
+
+        model, settings = self._model, self._model.settings
+        with model.own_state():
+            return Envelope.of(model, names, theory or settings.theory, settings.load_steps, self._permanent())
 
     def second_order(self, elapsed: float | None = None) -> str:
         """By how much, and where, the theories differ, where that is worth a word; "" of a large structure.

@@ -56,6 +56,11 @@ class Readiness:
     awaited: Simulation | None = None
     finding = False
 
+    @property
+    def readies(self) -> bool:
+        """True while another process gets ready what makes the present run fast."""
+        return False
+
     def waits_for(self, simulation: Simulation) -> Waiting | None:
         """What a simulation waits for; None if it can go on, interpreted or compiled."""
         return None

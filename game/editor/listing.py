@@ -16,7 +16,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bearing
 from pinjoint.components.units import units_on_screen
 from pinjoint.components.view import Listing
-from pinjoint.results import Results
+from pinjoint.results import Results, envelope_of_reactions, envelope_of_rods
 from pinjoint.systems.input.actions import LIVE, PROPERTIES, TABLE
 from pinjoint.systems.render.ui.listing import height_of, rows_in
 from pinjoint.tables import Table
@@ -27,8 +27,8 @@ _WIDE, _NARROW = 860.0, 400.0  # points across tables of rods that bend or bear 
 class Lister:
     """What is listed of the model that is open.
 
-    shown: "rods", "particles" or "sums". orders: by table, the key of the column by which its rows are ordered, "" as in
-    the model, and whether the largest come first. first: the row at the top.
+    shown: "rods", "particles" or "sums"; of envelopes "envelope" or "reactions". orders: by table, the key of the column by
+    which its rows are ordered, "" as in the model, and whether the largest come first. first: the row at the top.
     """
 
     def __init__(self, context: Any) -> None:  # pinjoint.editor.context.Context, which holds it
@@ -55,21 +55,22 @@ class Lister:
     def tables(self) -> dict[str, Table]:
         """All tables by name, up to date; empty while forces are not known."""
         known, model = self._context.view.forces_known, self._context.model
-        if self._of != (model.context, model.revision, known, language(), units_on_screen()):
+        envelope = self._context.view.enveloped
+        if self._of != (model.context, model.revision, known, language(), units_on_screen(), id(envelope)):
             found = Results.of(model if known else Model())
             self._tables = {"rods": found.rods, "particles": found.particles, "sums": found.sums}
-            self._of = (
-                model.context,
-                model.revision,
-                known,
-                language(),
-                units_on_screen(),
-            )  # finding them may compute forces
+            if envelope is not None:
+                of_reactions = envelope_of_reactions(model, envelope)
+                self._tables = {"envelope": envelope_of_rods(model, envelope), "reactions": of_reactions}
+            said = language(), units_on_screen(), id(envelope)
+            self._of = (model.context, model.revision, known, *said)  # finding them may compute forces
         return self._tables
 
     @property
     def table(self) -> Table:
         """The table that is shown."""
+        if self.shown not in self.tables:  # that of envelopes, or no longer
+            self.turn_to(next(iter(self.tables)))
         return self.tables[self.shown]
 
     @property
@@ -97,7 +98,7 @@ class Lister:
         place = view.table_place, view.pixel_ratio
         now = (self._of, self.shown, self._by, self.first, model.tags_revision, place)
         if self._made is None or self._made[0] != now:
-            order, titles = self._order, [tr("Forces in rods"), tr("Joints"), tr("Sums")]
+            order, titles = self._order, [self._title(name) for name in self.tables]
             first = min(max(self.first, 0), max(len(order) - rows_in(*place), 0))
             chosen = self._selected_rows
             shown = order[first : first + rows_in(*place)]
@@ -116,13 +117,30 @@ class Lister:
             self._made = now, made
         return self._made[1]
 
+    @staticmethod
+    def _title(name: str) -> str:
+        titles = {
+            "rods": tr("Forces in rods"),
+            "particles": tr("Joints"),
+            "sums": tr("Sums"),
+            "envelope": tr("Envelope"),
+            "reactions": tr("Reactions"),
+        }
+        return titles[name]
+
+    @property
+    def _elements(self) -> str:
+        """The table of the model whose elements the rows are; "" if they are none's."""
+        return {"sums": "", "envelope": "rods", "reactions": "particles"}.get(self.shown, self.shown)
+
     def follow(self) -> None:
         """Show the rows of elements that were selected elsewhere."""
         chosen = [handle for handle in self._context.selected if handle.table in ("rods", "particles")]
         if chosen != self._chosen and chosen:
-            if not any(handle.table == self.shown for handle in chosen):
-                self.turn_to(chosen[0].table)
-            row = next(handle.row for handle in chosen if handle.table == self.shown)
+            names = {"rods": "envelope", "particles": "reactions"} if "envelope" in self.tables else {}
+            if not any(handle.table == self._elements for handle in chosen):
+                self.turn_to(names.get(chosen[0].table, chosen[0].table))
+            row = next(handle.row for handle in chosen if handle.table == self._elements)
             if row < len(self.table.names):
                 at, shown = self._order.index(row), self.listing
                 self.first = min(max(shown.first, at - len(shown.rows) + 1), at)
@@ -154,7 +172,7 @@ class Lister:
                 self._select(row)
 
     def _select(self, row: int) -> None:
-        handles = self._context.model.tables[self.shown].handles if self.shown != "sums" else []
+        handles = self._context.model.tables[self._elements].handles if self._elements else []
         if row < len(handles):
             self._context.scenes.active.turn_to(self._context, handles[row])
 
@@ -177,7 +195,7 @@ class Lister:
 
     @property
     def _selected_rows(self) -> set[int]:
-        return {handle.row for handle in self._context.selected if handle.table == self.shown}
+        return {handle.row for handle in self._context.selected if handle.table == self._elements}
 
     def text(self, between: str = "") -> str:
         """The table in full, in the order in which it is shown, for spreadsheets of the present language."""

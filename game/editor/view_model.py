@@ -84,6 +84,17 @@ def show(context: Context, elapsed: float) -> None:
         remarks = [remark.message for remark in context.document.assessment.remarks]
         lasting = [*remarks, "" if follows(context) else _gone(context)]
         lasting += [_unsettled(context)] * (not any(lasting))
+    view.enveloped = None
+    if view.envelope and solved:
+        try:
+            view.enveloped = context.document.envelope
+            if left_out := list(view.enveloped.without):
+                said = tr(
+                    "Without an equilibrium, and so left out of the envelope: {names}.", names=listed(left_out)
+                )
+                lasting.append(said)
+        except ValueError as reason:  # there are none, or none has an equilibrium
+            view.envelope, context.notice = False, str(reason)
     view.preview = _preview(context)
     if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
         view.pressed = None
@@ -304,7 +315,13 @@ def _state_word(context: Context, *, brief: bool) -> str:
     if not context.busy:
         moved = context.view.provisional and context.scene == PAUSE and not brief
         return marked("paused, not in equilibrium") if moved else marked("paused")
-    return marked("running below the set speed") if context.document.live.clock.lagging else marked("running")
+    if not context.document.live.clock.lagging:
+        return marked("running")
+    slow = (
+        marked("running below the set speed: getting ready"),
+        marked("running below the set speed: steps take too long"),
+    )
+    return slow[0] if context.readiness.readies else slow[1]
 
 
 def _problem(context: Context) -> str:

@@ -7,6 +7,7 @@ what stays elastic, b = ½ (φ − x)ᵀ B (φ − x), which falls as N grows: o
 
 import math
 
+from pinjoint.systems.plasticity.kernels import AT_LIMIT
 from pinjoint.systems.program.kernel import compiled
 
 CLOSE = 2e-16  # share of EA × strains below which axial forces do not differ
@@ -17,12 +18,11 @@ FIRM = (
 
 
 @compiled
-def slips(moment_start, moment_end, thrust, rods_end_stiffness, rods_bowing, rods_moment_limit):
-    """How far the ends of a rod slip (rad), given the moments that they had without, and thrust = N L₀.
+def slips(moment_start, moment_end, limit_start, limit_end, thrust, rods_end_stiffness, rods_bowing):
+    """How far the ends of a rod slip (rad), given the moments that they had without, plastic moments, and thrust = N L₀.
 
     Of neither, one and both ends slipping, one case agrees with its own moments: that which rounding spoils least.
     """
-    limit_start, limit_end = rods_moment_limit
     if abs(moment_start) <= limit_start and abs(moment_end) <= limit_end:
         return 0.0, 0.0
     start = rods_end_stiffness[0] + thrust * rods_bowing[0]
@@ -79,56 +79,69 @@ def narrowed(force, missed, steepness, low, high):
 
 
 @compiled
-def slipped(
-    elongation,
-    slope_start,
-    slope_end,
-    load_start,
-    load_end,
-    rods_stiffness,
-    rods_rest_length,
-    rods_plastic_strain,
-    rods_tension_limit,
-    rods_compression_limit,
-    rods_bending_stiffness,
+def turned(slip_start, slip_end, rods_plastic_rotation, rods_moment_limit):
+    """The plastic rotations of both ends after they slipped, and the dissipated energy |M Δp|."""
+    lost = 0.0
+    if slip_start != 0.0:
+        lost += rods_moment_limit[0] * abs(slip_start)
+    if slip_end != 0.0:
+        lost += rods_moment_limit[1] * abs(slip_end)
+    return rods_plastic_rotation[0] + slip_start, rods_plastic_rotation[1] + slip_end, lost
+
+
+@compiled
+def first_hinges(time, moment_start, moment_end, rods_moment_limit, rods_hinge_formed_at):
+    """When the moments at the ends first came to the plastic moment; and no energy."""
+    start, end = rods_hinge_formed_at
+    if start < 0.0 and abs(moment_start) >= rods_moment_limit[0] * (1.0 - AT_LIMIT):
+        start = time
+    if end < 0.0 and abs(moment_end) >= rods_moment_limit[1] * (1.0 - AT_LIMIT):
+        end = time
+    return start, end, 0.0
+
+
+@compiled
+def branch(moment_start, moment_end, gain_start, gain_end):
+    """3 × the sign of the moment at the start if that end goes on slipping, + that at the end likewise."""
+    start = math.copysign(1.0, moment_start) if gain_start * moment_start > 0.0 else 0.0
+    end = math.copysign(1.0, moment_end) if gain_end * moment_end > 0.0 else 0.0
+    return 3.0 * start + end
+
+
+@compiled
+def margin(
+    branch,
+    dt,
+    moment_start,
+    moment_end,
+    gain_start,
+    gain_end,
+    thrust,
     rods_end_stiffness,
-    rods_initial_slopes,
     rods_bowing,
     rods_moment_limit,
 ):
-    """Slips of both ends (rad) and axial force (kN) of an elastic, perfectly plastic rod; the moments are M(φ − x).
+    """Elastic: distance of the moment, if the other end does as its branch says, from the limit; slipping: its growth.
 
-    elongation: of the chord. slopes: of its joints, less plastic rotations. load_start, load_end: moments by what acts
-    between the ends.
+    Both relative to the plastic moment; that of the end where it is less.
     """
-    bow_start = rods_bowing[0] * slope_start + rods_bowing[1] * slope_end
-    bow_end = rods_bowing[1] * slope_start + rods_bowing[2] * slope_end
-    by_start, by_end = slope_start - rods_initial_slopes[0], slope_end - rods_initial_slopes[1]
-    bent_start = rods_end_stiffness[0] * by_start + rods_end_stiffness[1] * by_end + load_start
-    bent_end = rods_end_stiffness[1] * by_start + rods_end_stiffness[2] * by_end + load_end
-    firm = FIRM * rods_bending_stiffness / rods_rest_length
-    strain = elongation / rods_rest_length - rods_plastic_strain
-    bow = 0.5 * (slope_start * bow_start + slope_end * bow_end)
-    force = min(max(rods_stiffness * (strain + bow), -rods_compression_limit), rods_tension_limit)
-    found, low, high = force, -math.inf, math.inf
-    slip_start = slip_end = 0.0
-    for _ in range(MOST_TRIALS):
-        thrust = max(force * rods_rest_length, firm)
-        moment_start, moment_end = bent_start + thrust * bow_start, bent_end + thrust * bow_end
-        slip_start, slip_end = slips(
-            moment_start, moment_end, thrust, rods_end_stiffness, rods_bowing, rods_moment_limit
-        )
-        at_start, at_end = slope_start - slip_start, slope_end - slip_end
-        left_start = rods_bowing[0] * at_start + rods_bowing[1] * at_end
-        left_end = rods_bowing[1] * at_start + rods_bowing[2] * at_end
-        bow = 0.5 * (at_start * left_start + at_end * left_end)
-        elastic = rods_stiffness * (strain + bow)
-        found = min(max(elastic, -rods_compression_limit), rods_tension_limit)
-        missed = force - found
-        softer = softening(thrust, left_start, left_end, slip_start, slip_end, rods_end_stiffness, rods_bowing)
-        steepness = 1.0 + rods_stiffness * rods_rest_length * softer * (found == elastic and thrust > firm)
-        nearer, low, high = narrowed(force, missed, steepness, low, high)
-        if abs(missed) <= CLOSE * rods_stiffness * (abs(strain) + bow) or nearer == force:
-            break
-        force = nearer
-    return slip_start, slip_end, found
+    limit_start, limit_end = rods_moment_limit
+    start = rods_end_stiffness[0] + thrust * rods_bowing[0]
+    mixed = rods_end_stiffness[1] + thrust * rods_bowing[1]
+    end = rods_end_stiffness[2] + thrust * rods_bowing[2]
+    sign_start = 1.0 if branch > 1.5 else -1.0 if branch < -1.5 else 0.0
+    sign_end = branch - 3.0 * sign_start
+    low = 1.0
+    if sign_start != 0.0:
+        low = min(low, sign_start * gain_start * dt * start / limit_start)
+        if sign_end == 0.0:
+            moment_end -= mixed / start * (moment_start - sign_start * limit_start)
+    elif sign_end != 0.0:
+        moment_start -= mixed / end * (moment_end - sign_end * limit_end)
+    if sign_end != 0.0:
+        low = min(low, sign_end * gain_end * dt * end / limit_end)
+    if sign_start == 0.0 and limit_start < math.inf:
+        low = min(low, 1.0 - abs(moment_start) / limit_start)
+    if sign_end == 0.0 and limit_end < math.inf:
+        low = min(low, 1.0 - abs(moment_end) / limit_end)
+    return low

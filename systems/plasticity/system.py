@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
-from pinjoint.components.rod import can_yield
+from pinjoint.components.rod import can_hinge, can_yield
 from pinjoint.systems.base import Commit, Law
 
 
@@ -50,3 +50,46 @@ class FirstYield(Commit):
 
     def needs(self, model: Model) -> bool:
         return can_yield(model)
+
+
+class Hinges(Law):
+    """No moment on the end of a rod passes its plastic moment: the end turns in a plastic hinge."""
+
+    name = "plasticity.hinges"
+    each = "ends"
+    unneeded = marked("no rod has a plastic moment, or settings.plasticity is off")
+    kernel = "pinjoint.systems.plasticity.hinges:slips"
+    reads = ("rods.end_stiffness", "rods.bowing", "rods.moment_limit")
+    adds = ("rods.end_moment",)
+
+    def needs(self, model: Model) -> bool:
+        return can_hinge(model)
+
+
+class Turning(Commit):
+    """Plastic rotations take up what ends of rods slip."""
+
+    name = "plasticity.turning"
+    unneeded = Hinges.unneeded
+    kernel = "pinjoint.systems.plasticity.hinges:turned"
+    branch = "pinjoint.systems.plasticity.hinges:branch"
+    margin = "pinjoint.systems.plasticity.hinges:margin"
+    reads = ("rods.moment_limit", "rods.end_stiffness", "rods.bowing")
+    writes = ("rods.plastic_rotation",)
+
+    def needs(self, model: Model) -> bool:
+        return can_hinge(model)
+
+
+class FirstHinges(Commit):
+    """Notes when plastic hinges first form at the ends of each rod."""
+
+    name = "plasticity.first_hinges"
+    unneeded = Hinges.unneeded
+    kernel = "pinjoint.systems.plasticity.hinges:first_hinges"
+    notes = True
+    reads = ("rods.moment_limit",)
+    writes = ("rods.hinge_formed_at",)
+
+    def needs(self, model: Model) -> bool:
+        return can_hinge(model)

@@ -27,16 +27,21 @@ from pinjoint.systems.program.identity import reached_from, used_by
 from pinjoint.systems.program.interpreter import plain_function
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
+_OF_SLIPPING = ("moment_start", "moment_end")  # as if the ends did not slip
+_OF_BRANCHES = (*_OF_SLIPPING, "gain_start", "gain_end", "thrust", "elongation", "rate", "dt")
 PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
     "rods": (*_TO_COMMITS, "rate"),
     "particles": ("time", "dt"),
     "pairs": ("apart", "drift", "time", "dt"),
     "potential": ("apart", "axial_force", "slope_start", "slope_end"),
-    "ends": ("slope_start", "slope_end", "axial_force", "rate_start", "rate_end", "time", "dt"),
+    "ends": (
+        *("slope_start", "slope_end", "axial_force", "rate_start", "rate_end", "time", "dt"),
+        *(*_OF_SLIPPING, "limit_start", "limit_end", "thrust"),
+    ),
     "rotations": ("time", "dt"),
-    "commit": _TO_COMMITS,
-    "branch": ("elongation", "rate", "dt"),
-    "margin": ("elongation", "rate", "dt", "branch"),
+    "commit": (*_TO_COMMITS, *_OF_SLIPPING, "slip_start", "slip_end"),
+    "branch": _OF_BRANCHES,
+    "margin": (*_OF_BRANCHES, "branch"),
     "event of rods": ("elongation", "rate", "axial_force"),
     "event of particles": (),
 }
@@ -78,6 +83,7 @@ class StepRole(Enum):
     RATE = "adds to the force of a rod's dampers"
     ENDS = "adds to the moments on the ends of a rod"
     RATE_OF_ENDS = "adds to the moments of dampers on the ends of a rod"
+    SLIPS = "is how far the ends of a rod slip, by their moments"
     TURNING = "adds to the moment that resists a particle's turning"
     EVENT = "stops the run where it changes sign"
 
@@ -177,6 +183,8 @@ class Bound:
         if self.each == "pairs":
             resists = given & {"drift", "particles_velocity"}
             return StepRole.PAIR_RESISTANCE if resists else StepRole.PAIR_FORCE
+        if self.each == "ends" and "moment_start" in given:
+            return StepRole.SLIPS
         if self.each == "ends":
             return StepRole.RATE_OF_ENDS if given & {"rate_start", "rate_end"} else StepRole.ENDS
         if self.each == "rotations":
@@ -361,10 +369,10 @@ def _check_role(system: StepSystem, model: Model) -> None:
     if isinstance(system, Commit):
         table, _, column = (system.writes[0] if len(system.writes) == 1 else "").partition(".")
         field = model.tables["rods"].fields.get(column) if table == "rods" else None
-        if field is None or field.role is Role.DOCUMENT or field.shape:
+        if field is None or field.role is Role.DOCUMENT or field.shape not in ((), (2,)):
             raise ProgramError(
-                "{system} has writes = {columns}; a commit writes exactly one column of the rods, which has one number"
-                " in each row and is not part of the document.",
+                "{system} has writes = {columns}; a commit writes exactly one column of the rods, which has one number,"
+                " or one of each end, in each row and is not part of the document.",
                 system=name,
                 columns=list(system.writes),
             )

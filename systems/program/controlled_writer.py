@@ -8,6 +8,7 @@ from typing import Any
 from pinjoint.components.model import Model
 from pinjoint.systems.base import Integrator, StepSystem
 from pinjoint.systems.physics.kernels import lowest
+from pinjoint.systems.plasticity.kernels import AT_LIMIT
 from pinjoint.systems.program.binding import Bound, StepRole, bind
 from pinjoint.systems.program.entries import Mark
 from pinjoint.systems.program.loops import RodLoop
@@ -15,6 +16,7 @@ from pinjoint.systems.program.templates import events, forces, implicit, rods, r
 from pinjoint.systems.program.writer import NO_POWER, POWER_RETURNED, Writer
 
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
+_LASTING = 1.0 - AT_LIMIT  # share of a plastic moment at which an end that goes on turning slips
 _STEADY = 1e-8  # a margin that changes less in a step is not watched
 
 
@@ -71,7 +73,8 @@ class ControlledWriter(Writer):
         """A function that does what the template says for every law that has branches, and every event."""
         lines: dict[str, list[str]] = {"rods": [], "particles": []}
         for place, (branch, margin) in enumerate(self.branches):
-            slope = self._slope(events.of_rod, self._apply(margin, "r"), [])
+            of_row = events.of_ends if "gain_start" in margin.parameters else events.of_rod
+            slope = self._slope(of_row, self._apply(margin, "r"), [])
             lines["rods"] += self._look(template, place, self._apply(branch, "r"), slope)
         for place, b in enumerate(self.events, start=len(self.branches)):
             of_row = events.of_rod if b.each == "rods" else events.of_particle
@@ -81,7 +84,8 @@ class ControlledWriter(Writer):
             side = f"-1.0 if {b.sides}[r] == Side.NEGATIVE else 1.0"
             slope = self._slope(of_row, f"branch * {quantity}", self._needed_force(b))
             lines[b.each] += self._look(template, place, side, slope)
-        return self.function(function, "compiled", **self._each_row(lines))
+        slipping = self.lines(rods.slip_rates, ahead=str(_AHEAD), share=str(_LASTING)) if self.slips else []
+        return self.function(function, "compiled", **self._each_row(lines, slipping))
 
     def _look(self, template: Callable[[], None], place: int, branch: str, slope: list[str]) -> list[str]:
         law = str(len(Mark) * place)

@@ -113,6 +113,9 @@ def problem_of(b: Bound, model: Model) -> str:
     from numba import types
 
     count, wanted = _RESULTS[b.purpose]
+    if b.purpose == "commit":  # of both ends of a rod one more
+        table, _, name = b.system.writes[0].partition(".")
+        count += len(model.tables[table].fields[name].shape)
     numbers = tuple(getattr(made, "types", (made,)))
     if len(numbers) != count or not all(isinstance(n, types.Number | types.Boolean) for n in numbers):
         return tr(

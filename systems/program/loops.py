@@ -20,6 +20,7 @@ _APART = 7
 
 ALL = "0, rods_between.shape[0]"
 
+_ROW = re.compile(r"\br\b")
 _ELEMENT = re.compile(r"\b([A-Za-z_]\w*)\[r((?:, \d+)*)\]")
 
 
@@ -87,7 +88,7 @@ class RodLoop:
             [f"{place(e)} = {_entry(e)}" for e in copied],
             [
                 *(f"{name} = {place(name)}" for name in self.gather),
-                *(_ELEMENT.sub(here, line) for line in self.compute),
+                *(_ROW.sub("start + k", _ELEMENT.sub(here, line)) for line in self.compute),
                 *(f"{place(name)} = {name}" for name in self.made),
             ],
             [

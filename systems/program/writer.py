@@ -6,6 +6,7 @@ on the plan: which kernels are called for each particle and rod, with which colu
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
@@ -15,19 +16,29 @@ import numpy as np
 
 from pinjoint.components.model import Model
 from pinjoint.components.particle import is_sprung
-from pinjoint.components.rod import AT_STRENGTH, bears_between, bends, is_warm, is_warped, turned_between
+from pinjoint.components.rod import (
+    AT_STRENGTH,
+    bears_between,
+    bends,
+    is_kinked,
+    is_warm,
+    is_warped,
+    turned_between,
+)
 from pinjoint.systems import is_ours
 from pinjoint.systems.base import MOST_PARTS, REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
 from pinjoint.systems.collision.driven.columns import Order, Real, Whole
 from pinjoint.systems.collision.kernels.grid import are_listed
 from pinjoint.systems.physics.automatic import SMALL
 from pinjoint.systems.physics.kernels import conserved, judge
+from pinjoint.systems.plasticity.hinges import CLOSE, FIRM, MOST_TRIALS, narrowed, softening
 from pinjoint.systems.program.binding import (
     HISTORIES,
     PROVIDED,
     TRIAL,
     TURNING,
     Bound,
+    ProgramError,
     StepRole,
     bind,
     by_role,
@@ -115,6 +126,7 @@ _TRAITS = {  # of a whole model
     "turned": turned_between,
     "warped": is_warped,
     "sprung": is_sprung,
+    "kinked": is_kinked,
 }
 
 
@@ -152,7 +164,7 @@ class Writer:
         self.form = form
         self.integrator = integrator
         traits = (has(model) for has in _TRAITS.values())
-        self.warm, self.bends, self.loaded, self.turned, warped, self.sprung = traits
+        self.warm, self.bends, self.loaded, self.turned, warped, self.sprung, self.kinked = traits
         self.zeros = {} if warped else {"rods_initial_slopes": "(0.0, 0.0)"}
         self.coordinates = 3 if self.bends else 2
         self.collides = any(system.impulsive for system in systems)
@@ -165,6 +177,7 @@ class Writer:
         self.bound = [b for b in bound if self.bends or b.each not in ("ends", "rotations")]
         check_names(self.bound)
         self.of = by_role(self.bound)
+        self.slips = self.of[StepRole.SLIPS][-1:]
         self.commits = [b for role in HISTORIES for b in self.of[role]]
         self.events = self.of[StepRole.EVENT]
         self.branching = [b.system for b in self.bound if getattr(b.system, "margin", "")]
@@ -186,6 +199,14 @@ class Writer:
             or self.of[StepRole.TURNING]
         )
         in_rods = [*self.of[StepRole.SUMMED], *self.of[StepRole.REPLACING]]
+        for b in in_rods if self.slips else ():
+            if not {"time", "dt"}.isdisjoint(b.parameters):
+                raise ProgramError(
+                    "{system} makes axial forces that change with time, beside which no plastic hinges are known; leave it"
+                    " out, or the plastic moments of rods.",
+                    b.system,
+                    system=b.system.name,
+                )
         self.working = [b for b in in_rods if not getattr(b.system, "elastic", False)]
         self.working_ends = [b for b in self.of[StepRole.ENDS] if b.system.name not in self.potentials]
         stored = sum(b.system.name in self.potentials for b in self.pairs)
@@ -195,12 +216,16 @@ class Writer:
         self.columns = [*ALWAYS, *(["rods_misfit"] if self.warm else []), *(OF_BENDING if self.bends else ())]
         self.columns += ["rods_span_load"] if self.loaded else []
         self.columns += ["particles_support_springs"] if self.sprung else []
+        self.columns += ["rods_plastic_rotation"] if self.kinked else []
         self._add_columns([*self.bound, *self.potentials.values()])
         if self.pairs:
             self.columns = list(dict.fromkeys([*self.columns, "particles_position", *ARRAYS]))
             self.names["are_listed"] = are_listed
         if self.collides:
             self.columns += PUSHED
+        if self.slips:
+            self.columns = list(dict.fromkeys([*self.columns, "rods_moment_limit", "rods_bending_stiffness"]))
+            self.names |= {"softening": softening, "narrowed": narrowed}
 
     @property
     def kernels(self) -> list[Bound]:
@@ -228,6 +253,8 @@ class Writer:
         return {
             "ALIKE": not self.integrator.controlled,
             "BENDS": self.bends,
+            "KINKED": self.kinked,
+            "SLIPS": bool(self.slips),
             "FORESEES": bool(self.of[StepRole.LOAD]) and not self.integrator.controlled,
             "LOADED": self.loaded,
             "LOADS": bool(self.of[StepRole.LOAD]),
@@ -289,6 +316,7 @@ class Writer:
             *(self.function(part, "inlined") for part in (steps.aim, steps.is_check_due)),
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
             *self._of_steps(),
+            *([self._slipping] if self.slips else []),
             self.function(forces.external, "compiled", particle_forces=self._particle_forces()),
             self._measure(),
             self._observe(),
@@ -308,6 +336,7 @@ class Writer:
             "kept": (*(f"kept_{name}" for name in self.kept), "own_acceleration", "own_support", "every"),
             "observed": (*OBSERVED, *(["rods_end_moment"] if self.bends else [])),
             "columns": self.columns,
+            "needed": [name for name in self.columns if re.search(rf"\b{name}\b", self._slipping)],
         }
 
     @property
@@ -344,6 +373,7 @@ class Writer:
         for name in self.kept:
             whole = [f"r, {d}" for d in range(self.coordinates)]
             places = whole if name in ("unpushed", "resisting") else whole[2:] if name in STATE else ["r"]
+            places = self._places(name) if name in self.written else places
             copies = (f"    {to.format(name)}[{place}] = {of.format(name)}[{place}]" for place in places)
             lines += [f"for r in range({name}.shape[0]):", *copies]
         return lines
@@ -371,6 +401,7 @@ class Writer:
             "CHECK_INTERVAL": self.integrator.check_interval,
             "MOST_PARTS": MOST_PARTS,
             "REVIEW_INTERVAL": REVIEW_INTERVAL,
+            **({"CLOSE": CLOSE, "FIRM": FIRM, "MOST_TRIALS": MOST_TRIALS} if self.slips else {}),
             **self.integrator.constants,
         }
 
@@ -486,7 +517,22 @@ class Writer:
 
     def geometry(self) -> list[str]:
         """Lines that give elongation, length and direction of a rod, and the slopes of its ends."""
-        return self.lines(rods.geometry)
+        return self.lines(rods.geometry, unslipped=self._unslipped() if self.slips else [])
+
+    def _unslipped(self) -> list[str]:
+        """Lines that give the axial force and the end moments of a rod whose ends do not slip."""
+        law = self.end_laws(self.of[StepRole.ENDS], "moment")
+        return [*self._axial_force(), *self.lines(rods.end_moments, law=law, SLIPS=False)]
+
+    @cached_property
+    def _slipping(self) -> str:
+        """The function that tells how far the ends of a rod slip; "" where none can."""
+        if not self.slips:
+            return ""
+        rows = {name: written_row(f"rods_{name}", "r", (3,)) for name in ("end_stiffness", "bowing")}
+        laws = {"unslipped": self._unslipped(), "axial_force": self._axial_force()}
+        slips = self._apply(self.slips[0], "r")
+        return self.function(rods.slipping, "compiled", "", slips=slips, **laws, **rows)
 
     def rate(self, *, of_axis: bool = False) -> list[str]:
         """Lines that give how fast a rod grows longer, and how fast its slopes grow; of_axis: also of the bowed axis."""
@@ -566,8 +612,14 @@ class Writer:
         late = [b for b in commits if b.role is StepRole.LATE_HISTORY]
         for b in commits:
             lines += self._axial_force() if b in late[:1] else []
-            lines.append(f"{_column(b)}[r], gone_{b.prefix} = {self._apply(b, 'r')}")
+            made = [f"{_column(b)}[{place}]" for place in self._places(_column(b))]
+            lines.append(f"{', '.join(made)}, gone_{b.prefix} = {self._apply(b, 'r')}")
         return lines, {f"gone_{b.prefix}": f"lost_{b.account} += gone_{b.prefix}" for b in commits}
+
+    def _places(self, name: str) -> list[str]:
+        """The indices of what a column that commits write holds of rod `r`."""
+        shape = self.model.rods.fields[self.written[name].partition(".")[2]].shape
+        return ["r, 0", "r, 1"] if shape else ["r"]
 
     def _dampers(self, powers: bool = False) -> RodLoop:
         """Forces that depend on how fast rods grow longer, and what the accounts gain by them per second."""
@@ -676,10 +728,10 @@ class Writer:
     def _needed_force(self, b: Bound) -> list[str]:
         return self._axial_force() if "axial_force" in b.parameters else []
 
-    def _each_row(self, lines: Mapping[str, list[str]]) -> dict[str, Any]:
+    def _each_row(self, lines: Mapping[str, list[str]], slipping: Sequence[str] = ()) -> dict[str, Any]:
         """Loops over the rods and over the particles with these lines, where there are any, for row `r`."""
         of_rods, of_particles = lines["rods"], lines["particles"]
-        rate = [*self.rate(of_axis=True), "rate = axis_rate"] if self.bends else self.rate()
+        rate = [*self.rate(of_axis=True), *slipping, "rate = axis_rate"] if self.bends else self.rate()
         rod_loop = RodLoop(self.shift | self.drift, [*self.geometry(), *rate, *of_rods]).one_by_one()
         particle_loop = [f"for r in range({EVERY}):", *indented(of_particles)]
         return {"rods": rod_loop if of_rods else [], "particles": particle_loop if of_particles else []}

@@ -22,11 +22,13 @@ from pinjoint.systems.render.marks import Fills, Mark, Owners, Picture, Points, 
 from pinjoint.systems.render.model.arrows import draw_loads, draw_particle_diagrams, draw_velocities
 from pinjoint.systems.render.model.cuts import draw_cuts
 from pinjoint.systems.render.model.diagrams import draw_diagrams
+from pinjoint.systems.render.model.envelopes import draw_envelope, draw_enveloped_reactions
 from pinjoint.systems.render.model.free_bodies import draw_free_bodies
 from pinjoint.systems.render.model.members import (
     draw_hinges,
     draw_inextensible,
     draw_moments,
+    draw_plastic_hinges,
     draw_span_loads,
 )
 from pinjoint.systems.render.model.sheet import MANY, Sheet, Shown, Stage, measure
@@ -130,9 +132,13 @@ def hits_at(model: Shown, view: View, theme: Theme, pixel: Vector) -> list[Hit]:
 
 def _draw_structure(sheet: Sheet) -> None:
     """Rods, supports and particles, with diagrams, loads and velocities."""
-    draw_diagrams(sheet, taken_by_heading(sheet))
+    if sheet.view.enveloped is None:
+        draw_diagrams(sheet, taken_by_heading(sheet))
+    else:
+        draw_envelope(sheet, sheet.view.enveloped, taken_by_heading(sheet))
     draw_ghost(sheet)
-    draw_deflected(sheet)
+    if sheet.view.enveloped is None:
+        draw_deflected(sheet)
     draw_halos(sheet)
     sides = support_sides(sheet)
     draw_supports(sheet, sides)
@@ -140,6 +146,7 @@ def _draw_structure(sheet: Sheet) -> None:
     draw_rods(sheet)
     draw_particles(sheet)
     draw_hinges(sheet)
+    draw_plastic_hinges(sheet)
     draw_inextensible(sheet)
     sheet.marks += sheet.above
     draw_cuts(sheet)
@@ -149,6 +156,9 @@ def _draw_structure(sheet: Sheet) -> None:
 
 def _draw_arrows(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     """Loads, velocities and reactions, beside supports on these sides of particles."""
+    if sheet.view.enveloped is not None:
+        draw_enveloped_reactions(sheet, sheet.view.enveloped)
+        return
     draw_span_loads(sheet)
     draw_loads(sheet)
     draw_velocities(sheet)

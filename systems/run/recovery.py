@@ -21,7 +21,7 @@ from pinjoint.systems.run.step_size import StepSize
 FAILURES = (StopReason.DIVERGED, StopReason.UNRESOLVED, StopReason.FAILED)
 MOST_HALVINGS = 6  # of an automatic step before a run is given up
 
-MOVING = *MOTION, *TURNING, "rods.plastic_strain"
+MOVING = *MOTION, *TURNING, "rods.plastic_strain", "rods.plastic_rotation"
 
 
 class Recovery:

@@ -8,7 +8,7 @@ import numpy as np
 
 from pinjoint.components import written
 from pinjoint.components.bent import borne_between
-from pinjoint.components.cases import factor_of_each, idle_settlement, permanent, unknown_case
+from pinjoint.components.cases import Acting, idle_settlement, unknown_case
 from pinjoint.components.language import plural, tr
 from pinjoint.components.load import static_factor
 from pinjoint.components.model import Model
@@ -34,19 +34,22 @@ class External:
     notes: tuple[str, ...]
 
     @classmethod
-    def of(cls, model: Model, theory: str = EXACT) -> External:
+    def of(cls, model: Model, theory: str = EXACT, acting: Acting | None = None) -> External:
         """The external forces on a model; a load counts with the factors of its case and of its history in statics.
 
         theory: where "first-order", without those on particles that no rod joins, which no contact can hold either.
+        acting: combinations, of which the particles follow one another.
         """
         particles, environment = model.particles, model.environment
-        loads, share = model.loads, permanent(model)
-        scaled = share * (particles.force + np.array(environment.force)) + borne_between(model)
+        loads, acting = model.loads, acting or Acting.of(model)
+        share = acting.permanent[:, None, None]
+        borne = borne_between(model, acting).reshape(len(share), -1, 2)
+        scaled = share * (particles.force + np.array(environment.force)) + borne
         by_history = np.array([static_factor(history) for history in loads.history], dtype=np.float64)
-        factor = by_history * factor_of_each(model, "loads")
-        moment = share * particles.moment
-        np.add.at(scaled, loads.on, factor[:, None] * loads.force)
-        np.add.at(moment, loads.on, factor * loads.moment)
+        factor = by_history * acting.loads
+        moment = share[..., 0] * particles.moment
+        np.add.at(scaled.swapaxes(0, 1), loads.on, factor.T[..., None] * loads.force[:, None])
+        np.add.at(moment.T, loads.on, factor.T * loads.moment[:, None])
         notes = [note for note in (unknown_case(model), idle_settlement(model, moving=False)) if note]
         for load in [loads[row] for row in np.flatnonzero(by_history == 0.0).tolist()]:
             notes.append(
@@ -60,11 +63,12 @@ class External:
         steady = share * particles.mass[:, None] * acceleration / 1000.0
         if bends(model):
             turns = rigid_joints(model) | particles.fixed_rotation
-            scaled = np.column_stack([scaled, np.where(turns, moment, 0.0)])
-            steady = np.column_stack([steady, np.zeros(particles.count)])
+            scaled = np.concatenate([scaled, np.where(turns, moment, 0.0)[..., None]], axis=2)
+            steady = np.concatenate([steady, np.zeros_like(steady[..., :1])], axis=2)
         if theory == FIRST_ORDER:
             alone = ~nodes(model) & ~particles.support_springs.any(axis=1)
-            scaled[alone] = steady[alone] = 0.0
+            scaled[:, alone] = steady[:, alone] = 0.0
+        scaled, steady = (part.reshape(-1, part.shape[2]) for part in (scaled, steady))
         return cls(scaled, steady, tuple(notes))
 
     def at(self, factor: float) -> Array:

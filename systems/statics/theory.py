@@ -60,6 +60,10 @@ class FirstOrder:
         """True if every motion is resisted, and by so much that no digits are lost."""
         return regular(self._matrix, self._measure.weight, -SURELY_HELD).definite
 
+    def solve(self, right: Array) -> Array:
+        """The unknowns under forces along them, (N,) or (N, k), not refined."""
+        return self._factor.solve(right)
+
     @cached_property
     def mechanisms(self) -> Array:
         """The motions of the unknowns that nothing resists, (N, k)."""

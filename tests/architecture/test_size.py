@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 70_032,
-    "files": 380,
-    "names": 3_874,  # functions, classes and constants of modules
-    "public names": 2_300,
-    "numbers": 1_500,  # other than 0, 1 and 2, in constants and defaults
+    "lines": 71_296,
+    "files": 383,
+    "names": 3_931,  # functions, classes and constants of modules
+    "public names": 2_334,
+    "numbers": 1_513,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 56_774,
+    "lines of tests": 57_347,
 }
 
 

@@ -108,7 +108,7 @@ def test_a_place_within_a_member_without_dividing_it(source: object, letter: str
 
 
 def inner(made: Model, rod: str, letter: str, share: float) -> float:
-    statics = Statics(made, lambda: np.zeros(made.rods.count))
+    statics = Statics(made, lambda: np.zeros((made.rods.count, 3)))
     made.settings.theory = "first-order"
     made.show(statics)
     return float(inner_forces(made, np.array([made.rods[rod].row]), letter).at(np.array([share]))[0, 0])

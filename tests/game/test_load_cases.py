@@ -1,18 +1,24 @@
 """Load cases and combinations in the window, by keys and the mouse."""
 
+import json
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from pinjoint import Session
+from pinjoint.commands.command_line import main
 from pinjoint.components.cases import acting, choices
 from pinjoint.components.language import spoken
 from pinjoint.documents.document import document, parse
 from pinjoint.editor.scenes.properties import Properties
+from pinjoint.sheet import Solved, contents
+from pinjoint.systems.render.backends.paper import LAYOUTS
 from pinjoint.systems.render.picture import compose, hits_at
 from pinjoint.systems.render.theme import load_theme
 from tests.game.test_frames_by_mouse import opened
 from tests.game.test_influence import three_spans
+from tests.game.test_sheet import figures_of
 
 Document = dict[str, Any]
 
@@ -94,7 +100,10 @@ def test_keys_go_through_what_acts() -> None:
     for _ in choices(session.model):
         session.press("ctrl+g")
         seen.append(session.settings.combination)
-    assert seen == ["ULS", "all", "permanent", "settling", "snow", ""]
+    assert seen == ["ULS", "all", "permanent", "settling", "snow", "snow"]
+    assert session.view.envelope
+    session.press("ctrl+g")
+    assert (session.settings.combination, session.view.envelope) == ("", False)
     session = in_statics(three_spans())
     assert titles(session) == []
     session.press("ctrl+g")
@@ -182,3 +191,76 @@ def test_in_portuguese() -> None:
         session = in_statics(beam(combination="ULS"))
         assert "ULS: 1,35 permanente + 1,5 snow" in texts(session)
         assert titles(session)[0] == "Todos os casos × 1"
+
+
+# --- envelopes -------------------------------------------------------------------------------------------
+
+
+def test_the_window_draws_the_envelope_with_what_governs() -> None:
+    """Three spans, ULS and with a support that settles by 1 cm: numbers by three moments, read from the picture."""
+    session = in_statics(beam())
+    choose(session, "Envelope")
+    shown = texts(session)
+    assert "envelope of ULS and all" in shown
+    assert {"18.96 kN·m (all)", "10.08 kN·m (ULS)", "15.06 kN·m (all)"} <= set(shown)
+    assert {"y: 9.480 kN (all) … 4.980 kN (ULS)", "y: 9.480 kN … 4.980 kN"} & set(shown)
+    session.press("i")
+    assert "−18.34 kN (all)" in texts(session)
+    session.press("ctrl+g")
+    assert "all cases × 1" in texts(session)
+    for _ in choices(session.model):
+        session.press("ctrl+g")
+    assert "envelope of ULS and all" in texts(session)
+
+
+def test_tables_name_what_governs() -> None:
+    session = in_statics(beam())
+    choose(session, "Envelope")
+    session.press("n")
+    session.frame(0.0)
+    assert list(session.lister.tables) == ["envelope", "reactions"]
+    heads, first, *_ = list(session.lister.table.rows())
+    row = dict(zip(heads, first, strict=True))
+    assert row["M max (kN·m)"] == pytest.approx(18.96, abs=5e-3)
+    assert (row["M max in"], row["M min in"]) == ("all", "ULS")
+    session.lister.turn(1)
+    rows = {name: values for name, *values in session.lister.table.rows()}
+    assert rows["C"][4:] == [pytest.approx(22.11), "all", pytest.approx(11.61), "ULS"]
+    session.act("toggle envelope")
+    session.frame(0.0)
+    assert list(session.lister.tables) == ["rods", "particles", "sums"]
+    assert session.lister.table[0][0] == "rod"
+
+
+def test_there_is_none_without_combinations_or_equilibrium() -> None:
+    session = in_statics(beam(combinations={}))
+    session.act("toggle envelope")
+    session.frame(0.0)
+    assert session.notice.startswith("The model has no combinations")
+    assert not session.view.envelope
+    source = beam(theory="exact")
+    source["settings"]["combinations"]["too much"] = {"snow": 1e7}
+    session = in_statics(source | {"settings": source["settings"] | {"theory": "exact"}})
+    session.act("toggle envelope")
+    session.frame(0.0)
+    assert session.view.enveloped.combinations == ("ULS", "all")
+    assert list(session.view.enveloped.without) == ["too much"]
+    assert "left out of the envelope: too much" in session.view.status.notice
+
+
+def test_commands_draw_cases_combinations_and_envelopes(tmp_path: Path) -> None:
+    model, made = tmp_path / "beam.json", tmp_path / "made.svg"
+    model.write_text(json.dumps(beam()), encoding="utf-8")
+    for options, said in (
+        (["--combination", "ULS"], "ULS: 1.35 permanent + 1.5 snow"),
+        (["--combination", "snow"], "case snow"),
+        (["--envelope"], "envelope of ULS and all"),
+    ):
+        assert main(["render", str(model), "--static", "--diagrams", *options, "--output", str(made)]) == 0
+        assert said in made.read_text(encoding="utf-8")
+    assert main(["render", str(model), "--envelope", "--output", str(made)]) == 2
+    assert main(["sheet", str(model), "--envelope", "--output", str(tmp_path / "sheet.pdf")]) == 0
+    figures = figures_of(contents(Solved(parse(beam()), "first-order", enveloped=True), LAYOUTS[0]))
+    captions = [figure.caption.text for figure in figures]
+    assert any(caption.startswith("Envelope of ULS and all: Bending moments M") for caption in captions)
+    assert main(["sheet", str(model), "--combination", "snow", "--output", str(tmp_path / "sheet.pdf")]) == 0

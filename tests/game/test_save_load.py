@@ -86,16 +86,16 @@ def test_a_name_takes_letters_digits_spaces_and_a_minus(session: Session) -> Non
     session.press("s")
     assert session.scene == "save"
     session.type("My/Bridge*2 ?\\:|\n")
-    assert session.boxes == {"name": "My-Bridge2 "}
+    assert session.boxes["name"] == "My-Bridge2 "
     session.press("backspace")
-    assert session.boxes == {"name": "My-Bridge2"}
+    assert session.boxes["name"] == "My-Bridge2"
 
 
 def test_escape_restores_the_name_and_then_leaves_without_saving(session: Session, data: Path) -> None:
     session.press("s")
     session.type("x")
     session.press("escape")
-    assert session.boxes == {"name": ""}
+    assert session.boxes["name"] == ""
     assert session.scene == "save"
     session.press("escape")
     assert session.scene == "pause"
@@ -167,7 +167,7 @@ def test_a_file_in_place_of_the_folder_is_explained(session: Session, data: Path
     (data / "models").write_text("no folder")
     saved_as(session, "a")
     assert session.scene == "save"
-    assert "models cannot be made: File exists. Set the variable PINJOINT_DATA" in message_of(session)
+    assert "models cannot be made: File exists. Write another one" in message_of(session)
 
 
 def test_ctrl_s_saves_again_without_asking(session: Session, data: Path) -> None:
@@ -207,7 +207,7 @@ def test_an_example_is_not_overwritten(data: Path) -> None:
     session.rods["AB"].stiffness = 5.0
     session.press("ctrl+s")
     assert session.scene == "save"
-    assert session.boxes == {"name": "isostatic"}
+    assert session.boxes["name"] == "isostatic"
     session.press("return")
     assert stiffness_in(data / "models" / "isostatic.json") == 5.0
     assert stiffness_in("isostatic") == 164640.0
@@ -350,7 +350,7 @@ def test_a_click_on_a_saved_picture_offers_its_name(session: Session) -> None:
     place = scene_of(session).layout(session).place_of(tile)
     assert place is not None
     session.press("click", (place.left + 9, place.top + 9))
-    assert session.boxes == {"name": "a"}
+    assert session.boxes["name"] == "a"
     session.press("return")
     assert "already" in message_of(session)
 
@@ -593,3 +593,62 @@ def test_lessons_stand_in_full_rows_with_their_titles_inside(session: Session, w
     ]
     for mark, card in titles:
         assert mark.x + text_width(mark.text, mark.size, mark.weight) <= card.left + card.width - 6.0
+
+
+# --- where files go --------------------------------------------------------------------------------------
+
+
+def in_folder(session: Session, key: str, folder: str) -> None:
+    """Type a folder into the form that a key opens."""
+    session.press(key)
+    session.click_box("folder")
+    session.press("ctrl+a")
+    session.type(folder)
+
+
+def test_models_go_to_the_folder_that_was_typed_which_is_remembered(data: Path, tmp_path: Path) -> None:
+    session, folder = Session.open("isostatic"), tmp_path / "course" / "week 3"
+    in_folder(session, "s", str(folder))
+    session.press("shift+tab")
+    session.press("ctrl+a")
+    session.type("truss")
+    session.press("return")
+    assert (folder / "truss.json").is_file()
+    assert str(folder) in session.notice or "truss" in session.notice
+    again = Session.open("isostatic")
+    again.press("ctrl+o")
+    assert scene_of(again).boxes["folder"] == str(folder)
+    again.type("truss")
+    again.press("return")
+    assert again.document.file.path == folder / "truss.json"
+    in_folder(again, "ctrl+o", str(data / "models"))
+    again.press("return")
+    assert message_of(again) == ""
+    assert library.models_folder() == library.own_folder()
+
+
+@pytest.mark.parametrize(
+    ("key", "folder", "said"),
+    [
+        ("s", "models", "only a part of a path"),
+        ("ctrl+o", "/no/such/folder", "There is no folder"),
+        ("s", "/dev/null/models", "cannot be used"),
+        ("s", "~nobody knows/models", "cannot be used"),
+    ],
+)
+def test_a_folder_that_cannot_be_used_is_refused_and_the_former_one_stays(
+    data: Path, key: str, folder: str, said: str
+) -> None:
+    session = Session.open("isostatic")
+    in_folder(session, key, folder)
+    session.press("return")
+    assert said in message_of(session)
+    assert library.models_folder() == data / "models"
+
+
+def test_the_form_says_where_everything_goes(data: Path) -> None:
+    session = Session.open("isostatic")
+    session.press("s")
+    told = scene_of(session).form.boxes[1].explanation
+    assert str(data / "models") in told
+    assert str(data / "autosave") in told

@@ -465,3 +465,30 @@ def test_plots_go_from_no_load_to_the_last_step() -> None:
     session.press("q")
     session.update_view()
     assert not session.view.readouts
+
+
+@pytest.mark.parametrize("source", [NEW, "isostatic"])
+def test_a_velocity_that_is_drawn_in_statics_begins_the_run(source: Any) -> None:
+    session = Session.open(source)
+    session.resize(1000, 720)
+    if not session.particles.count:
+        session.press("p", session.point(0.0, 0.0))
+    name = session.particles[-1].name if source == NEW else "B"
+    session.press("q")
+    session.press("v", session.point(*session.particles[name].position))
+    session.type("3 m/s; 0")
+    session.press("return")
+    session.press("escape")
+    session.press("space")
+    assert session.scene == "simulation"
+    assert tuple(session.particles[name].velocity) == (3.0, 0.0)
+
+
+def test_a_run_below_its_speed_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    session = Session.open("isostatic")
+    session.press("space")
+    session.document.live.clock.lagging = True
+    for readies, said in ((False, "steps take too long"), (True, "getting ready")):
+        monkeypatch.setattr(type(session.readiness), "readies", readies)
+        session.update_view()
+        assert session.view.status.state == f"running below the set speed: {said}"

@@ -62,6 +62,7 @@ def rod_energy(model: Model, row: int, shift: Any, turns: Any) -> Any:
         tuple(k * rest / (rod.bending_stiffness or 1.0) for k in rod.end_springs),
     )
     chord = angle(dx * shift[1] - dy * shift[0], dx * x + dy * y)
+    turns = [turn - plastic for turn, plastic in zip(turns, rod.plastic_rotation, strict=True)]
     mean = sum(turns[end].real for end in rigid) / len(rigid) if rigid else 0.0
     chord += 2 * math.pi * round((mean - chord.real) / (2 * math.pi))
     slopes = np.array([turns[0] - chord, turns[1] - chord])

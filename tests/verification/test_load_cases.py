@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from pinjoint import Session
+from pinjoint.components.bent import inner_forces
 from pinjoint.components.field import FieldError
+from pinjoint.components.load import Load
 from pinjoint.documents.models import ModelError
 from tests.reference.models import model, particle, rod
 
@@ -166,3 +168,114 @@ def test_undo_files_and_bad_input() -> None:
     document["settings"]["combination"] = "SLS"
     with pytest.raises(ModelError, match=r"\$.settings.combination: there is no combination 'SLS'"):
         Session.open(document)
+
+
+# --- envelopes -----------------------------------------------------------------------------------------
+
+
+def patterns(**settings: Any) -> Session:
+    """Two spans of 6 m under g = 4 kN/m, and q = 10 kN/m on one, the other or both."""
+    beam = {"stiffness": 1e6, "bending_stiffness": 2e4, "distributed_force": [0, -4.0]}
+    supports = [particle(name, x, 0, fixed=[name == "A", True]) for name, x in (("A", 0), ("B", 6), ("C", 12))]
+    combinations = {name: {"permanent": 1.0, **dict.fromkeys(name, 1.0)} for name in ("LR", "L", "R")}
+    made = model(supports, [rod("A", "B", **beam), rod("B", "C", **beam)])
+    load = {"start_intensity": [0, -10.0], "end_intensity": [0, -10.0]}
+    made["span_loads"] = [{"rod": "AB", "case": "L"} | load, {"rod": "BC", "case": "R"} | load]
+    made["settings"] = {"combinations": combinations, "theory": "first-order", **settings}
+    return Session.open(made)
+
+
+def test_patterns_of_two_spans_by_hand() -> None:
+    """M_B = −(w₁ + w₂) L²/16; in a span under w, R = wL/2 + M_B/L at its end and M = R²/2w at R/w."""
+    length, found = 6.0, patterns().envelope()
+    assert found.combinations == ("LR", "L", "R")
+    assert not found.without
+    at_support = {name: -(4.0 * 2 + 10.0 * len(name)) * 36.0 / 16.0 for name in found.combinations}
+    least, most = found.extremes("M", 0)
+    assert least == pytest.approx((at_support["LR"], length, least.combination))
+    assert least.combination == "LR"
+    end = 14.0 * 3.0 + at_support["L"] / length
+    assert (most.value, most.distance) == pytest.approx((end**2 / 28.0, end / 14.0), rel=1e-12)
+    assert most.combination == "L"
+    assert found.reaction.values[:, 1, 1] == pytest.approx(
+        [-2 * at_support["L"] / 6 + 54.0, 84.0 - 2 * at_support["LR"] / 6]
+    )
+    assert found.reaction.governing[:, 1, 1].tolist() == [1, 0]
+    assert found.reaction.governing[:, 0, 0].tolist() == [-1, -1]  # nothing in any
+    least, most = found.extremes("V", 0)
+    assert (least.value, least.combination) == (pytest.approx(at_support["LR"] / 6 - 42.0), "LR")
+    assert (most.value, most.combination) == (pytest.approx(end), "L")
+
+
+@pytest.mark.parametrize(
+    ("seed", "theory"), [(1, "first-order"), (2, "first-order"), (3, "exact"), (4, "first-order")]
+)
+def test_envelopes_by_brute_force(seed: int, theory: str) -> None:
+    """The least and the most of N, V, M at many places of all combinations, each solved alone and shown."""
+    document = frame(seed)
+    document["settings"]["theory"] = theory
+    lot = np.random.default_rng(seed)
+    combinations = {
+        f"C{k}": dict(zip(CASES, lot.uniform(-1.5, 1.5, 4).tolist(), strict=True)) for k in range(6)
+    }
+    document["settings"]["combinations"] = combinations
+    if seed == 4:  # rods that yield, or not
+        document["rods"][4] |= {"tensile_strength": 90.0, "compressive_strength": 90.0}
+    session = Session.open(document)
+    found = session.envelope()
+    every = np.arange(session.rods.count)
+    shares = np.linspace(0.0, 1.0, 41)
+    along: dict[str, list[np.ndarray]] = {name: [] for name in "NVM"}
+    stations: dict[str, list[np.ndarray]] = {name: [] for name in "NVM"}
+    reactions, yields = [], []
+    session.press("q")
+    for name in combinations:
+        session.model.settings.combination = name
+        for letter in "NVM":
+            curves = inner_forces(session.model, every, letter)
+            along[letter].append(curves.at(shares))
+            stations[letter].append(curves.at(found.shares[letter]))
+        reactions.append(np.column_stack([session.particles.reaction, session.particles.reaction_moment]))
+        yields.append(bool(session.rods.yielding.any()))
+    assert any(yields) == (seed == 4)
+    assert not all(yields)
+    for letter in "NVM":
+        values, bounds = np.array(stations[letter]), found.forces[letter].values
+        size = np.abs(values).max()
+        assert bounds[0] == pytest.approx(values.min(axis=0), abs=1e-9 * size)
+        assert bounds[1] == pytest.approx(values.max(axis=0), abs=1e-9 * size)
+        for row in every.tolist():
+            least, most = found.extremes(letter, row)
+            brute = np.array(along[letter])[:, row]
+            assert least.value <= brute.min() + 1e-9 * size
+            assert most.value >= brute.max() - 1e-9 * size
+            where = curves_at(session, combinations, letter, row, least.distance)
+            assert where[least.combination] == pytest.approx(least.value, abs=1e-6 * size)
+    assert found.reaction.values[0] == pytest.approx(np.min(reactions, axis=0), abs=1e-8)
+    assert found.reaction.values[1] == pytest.approx(np.max(reactions, axis=0), abs=1e-8)
+
+
+def curves_at(session: Session, names: Any, letter: str, row: int, distance: float) -> dict[str, float]:
+    """What a force at a place is in each combination, {"": …} of one of them."""
+    share, found = np.array([distance / float(session.rods.original_length[row])]), {}
+    for name in names:
+        session.model.settings.combination = name
+        found[name] = float(inner_forces(session.model, np.array([row]), letter).at(share)[0, 0])
+    return found | {"": found[name]}
+
+
+def test_combinations_without_a_solution_are_named() -> None:
+    session = patterns(theory="exact")
+    session.model.settings.combinations = {
+        "good": {"permanent": 1.0},
+        "much": {"permanent": 1.0, "push": 1.0},
+    }
+    session.model.create(Load, on=[2], force=[(-9e4, 0.0)], case=["push"])
+    found = session.envelope()
+    assert found.combinations == ("good",)
+    assert list(found.without) == ["much"]
+    with pytest.raises(ValueError, match="bad"):
+        session.envelope("bad")
+    session.model.settings.combinations = {}
+    with pytest.raises(ValueError, match="has no combinations"):
+        session.envelope()

@@ -58,5 +58,6 @@ def _sheet(context: Context, pixel: Vector) -> None:
     shape, theory = context.document.shapes.shown, context.model.settings.theory
     lines = [shape] if shape is not None and not shape.swings else []
     with saving():
-        path = context.window.save("pinjoint-sheet.pdf", sheet(context.model, theory, lines))
+        made = sheet(context.model, theory, lines, enveloped=context.view.enveloped is not None)
+        path = context.window.save("pinjoint-sheet.pdf", made)
     context.notice = tr("Sheet saved: {file}", file=path)

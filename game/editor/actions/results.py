@@ -233,13 +233,17 @@ def _usual(model: Model, elements: Sequence[Handle]) -> tuple[Sequence[Handle], 
 
 @action("next combination", "ctrl+g", "what acts: all cases, combinations, single cases", while_drawing=False)
 def _next_combination(context: Context, pixel: Vector) -> None:
-    """Let the next combination or load case act; after the last, all cases again."""
+    """Let the next combination or load case act; after the last, the envelope in statics, then all cases again."""
     names, settings = choices(context.model), context.model.settings
     if not names:
         raise Refusal(
             "There is one load case only. The boxes of a load say its case: select what bears it and press Return."
         )
-    _let_act(context, names[(names.index(settings.combination) + 1) % len(names)])
+    following = 0 if context.view.envelope else names.index(settings.combination) + 1
+    if following == len(names) and settings.combinations and context.scene == STATICS:
+        context.view.envelope = True
+    else:
+        _let_act(context, names[following % len(names)])
 
 
 @action("show combination")

@@ -6,6 +6,8 @@ import math
 from functools import partial
 from operator import attrgetter
 
+import numpy as np
+
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.language import joined, plural, tr
@@ -49,7 +51,8 @@ def _begin_from_statics(context: Context) -> bool:
     Asked a second time, it begins undeformed instead.
     """
     model, statics = context.model, context.document.statics
-    moving = model.tables["particles"].storage("velocity").any() or not nodes(model).all()
+    velocity = model.tables["particles"].storage("velocity").copy()
+    moving = velocity.any() or not nodes(model).all()
     statics.go_on(to_the_end=True)
     if statics.offered == statics.revision:
         context.restart()
@@ -62,6 +65,8 @@ def _begin_from_statics(context: Context) -> bool:
         return False
     if statics.balanced:
         context.settle(model.settings.load_steps, anew=True)
+        rows = np.flatnonzero(velocity.any(axis=1)).tolist()  # which equilibrium has none of
+        model.assign([model.particles[row] for row in rows], "velocity", [tuple(velocity[row]) for row in rows])
     return True
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from pinjoint.components.form import FILE_NAME, Box, Form, Tile
+from pinjoint.components.form import FILE_NAME, TEXT, Box, Form, Tile
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.documents import library, models
 from pinjoint.documents.previews import preview
@@ -31,13 +31,35 @@ class FileScene(FormScene):
     def new_form(self, heading: str, name: str, tiles: list[Tile], accept: str) -> Form:
         """A form with a box for the name, a button, and tiles whose pictures are to be read later."""
         self._unread = [tile for tile in tiles if not tile.symbol]
-        box = Box(tr("name"), "name", name, opened=name, accepts=FILE_NAME)
-        return Form(heading, accept=accept, boxes=[box], tiles=tiles)
+        folder, own = str(library.models_folder()), library.own_folder()
+        where = tr("Models and pictures go there; left empty: to {folder}.", folder=own)
+        kept = tr("Unsaved work is kept in {folder}.", folder=library.data_folder() / "autosave")
+        boxes = [
+            Box(tr("name"), "name", name, opened=name, accepts=FILE_NAME),
+            Box(tr("folder"), "folder", folder, opened=folder, accepts=TEXT, explanation=joined([where, kept])),
+        ]
+        return Form(heading, accept=accept, boxes=boxes, tiles=tiles)
 
     @property
     def box(self) -> Box:
         """The box for the name."""
         return self.form.boxes[0]
+
+    @property
+    def folder(self) -> Box:
+        """The box for the folder of models."""
+        return self.form.boxes[1]
+
+    def take_folder(self, *, make: bool) -> bool:
+        """Use the folder that was typed from now on, a new one if it may be made; False if it is refused, which is said."""
+        if self.folder.text == self.folder.opened:
+            return True
+        try:
+            library.choose_folder(self.folder.text, make=make)
+        except library.NameRefused as error:
+            self.form.message = str(error)
+            return False
+        return True
 
     # --- typing and choosing -----------------------------------------------------------------------
 
@@ -77,8 +99,10 @@ class FileScene(FormScene):
         return tiles[min(max(beside, 0), len(tiles) - 1)]
 
     def next_box(self, context: Context, by: int) -> None:
-        """Tab: select the only box, or accept it if it is selected."""
-        self.typing.select(self.box if self.form.selected is None else None)
+        """Tab: select the next box, or accept the last one."""
+        order = [None, *self.form.boxes]
+        at = next(number for number, box in enumerate(order) if box is self.form.selected)
+        self.typing.select(order[(at + by) % len(order)])
 
     # --- pictures ----------------------------------------------------------------------------------
 
@@ -175,6 +199,8 @@ class Save(FileScene):
     def accept(self, context: Context) -> None:
         """Return: save."""
         name = self.box.text.strip()
+        if not self.take_folder(make=True):
+            return
         try:
             path = library.path_of(name)
             if path.exists() and self._confirmed != name:
@@ -188,11 +214,9 @@ class Save(FileScene):
             context.notice = context.document.save_as(path)
         except OSError as error:
             self.form.message = tr(
-                "The folder {folder} cannot be made: {reason}. Set the variable {variable} to a folder where you may write,"
-                " and start Pinjoint again.",
+                "The folder {folder} cannot be made: {reason}. Write another one where you may write.",
                 folder=library.models_folder(),
                 reason=error.strerror,
-                variable=library.DATA_VARIABLE,
             )
             return
         except (library.NameRefused, models.ModelError) as error:

@@ -87,6 +87,10 @@ class Load(FileScene):
 
     def accept(self, context: Context) -> None:
         """Return: open the chosen tile, else the model whose name was typed, else the first visible tile."""
+        if self.folder.text != self.folder.opened:
+            if self.take_folder(make=False):
+                self.form = self.make_form(context)
+            return
         name, chosen = self.box.text.strip(), self.form.chosen
         left = [tile for tile in self.form.tiles if not tile.hidden]
         if chosen is not None:

@@ -72,6 +72,17 @@ def of_rod():
     elongation = here
 
 
+def of_ends():
+    """The same for the ends of a rod, from what rods.slip_rates tells."""
+    gap = insert(margin)
+    moment_start = soon_moment_start
+    moment_end = soon_moment_end
+    thrust = soon_thrust
+    gain_start = then_start
+    gain_end = then_end
+    slope = (insert(margin) - gap) / small
+
+
 def of_particle():
     """The same for a particle, at its displacement (x, y)."""
     x = displacement[r, 0]

@@ -3,7 +3,7 @@
 sx, sy: displacement of b relative to a (m). drift_x, drift_y: velocity of b relative to a (m/s).
 """
 
-# ruff: noqa: F821, F841, SIM108
+# ruff: noqa: F821, F841, RUF059, SIM108
 # mypy: ignore-errors
 
 
@@ -35,6 +35,9 @@ def geometry():
     else:
         elongation = stretch + (original - rods_rest_length[r])
     if BENDS:
+        if KINKED:
+            turn_a -= rods_plastic_rotation[r, 0]
+            turn_b -= rods_plastic_rotation[r, 1]
         sine = dx * sy - dy * sx
         cosine = dx * x + dy * y
         reach = length * original + abs(cosine)
@@ -63,11 +66,87 @@ def geometry():
         bow_start = rods_bowing[r, 0] * slope_start + rods_bowing[r, 1] * slope_end
         bow_end = rods_bowing[r, 1] * slope_start + rods_bowing[r, 2] * slope_end
         rest = rods_rest_length[r]
+        if SLIPS:
+            straight = elongation
         elongation += 0.5 * rest * (slope_start * bow_start + slope_end * bow_end)
+        if SLIPS:
+            insert(unslipped)
+            free_start = slope_start
+            free_end = slope_end
+            slip_start = 0.0
+            slip_end = 0.0
+            if abs(moment_start) > rods_moment_limit[r, 0] or abs(moment_end) > rods_moment_limit[r, 1]:
+                slip_start, slip_end, moment_start, moment_end, thrust = slipping(
+                    r, 1.0, straight, slope_start, slope_end, nx, ny, *needed
+                )
+                slope_start -= slip_start
+                slope_end -= slip_end
+                bow_start = rods_bowing[r, 0] * slope_start + rods_bowing[r, 1] * slope_end
+                bow_end = rods_bowing[r, 1] * slope_start + rods_bowing[r, 2] * slope_end
+                elongation = straight + 0.5 * rest * (slope_start * bow_start + slope_end * bow_end)
+
+
+def slipping(r, share, straight, slope_start, slope_end, nx, ny, *needed):
+    """Slips of the ends of rod `r` beyond its plastic rotations, its moments as if they did not slip further, and N L₀.
+
+    share: of the plastic moments that counts. straight: elongation of the chord. Slips follow from the axial force, and that
+    from the axis, which bows less for them: one equation, see systems/plasticity/hinges.py.
+    """
+    rest = rods_rest_length[r]
+    bow_start = rods_bowing[r, 0] * slope_start + rods_bowing[r, 1] * slope_end
+    bow_end = rods_bowing[r, 1] * slope_start + rods_bowing[r, 2] * slope_end
+    elongation = straight + 0.5 * rest * (slope_start * bow_start + slope_end * bow_end)
+    insert(unslipped)
+    limit_start = share * rods_moment_limit[r, 0]
+    limit_end = share * rods_moment_limit[r, 1]
+    slip_start, slip_end = insert(slips)
+    if slip_start == 0.0 and slip_end == 0.0:
+        return slip_start, slip_end, moment_start, moment_end, thrust
+    free_start = slope_start
+    free_end = slope_end
+    pulled_start = bow_start
+    pulled_end = bow_end
+    bent_start = moment_start - thrust * bow_start
+    bent_end = moment_end - thrust * bow_end
+    firm = FIRM * rods_bending_stiffness[r] / rest
+    stiffness = rods_stiffness[r] / rest
+    close = CLOSE * stiffness * (abs(straight) + abs(elongation))
+    low = -math.inf
+    high = math.inf
+    for _ in range(MOST_TRIALS):
+        slope_start = free_start - slip_start
+        slope_end = free_end - slip_end
+        bow_start = rods_bowing[r, 0] * slope_start + rods_bowing[r, 1] * slope_end
+        bow_end = rods_bowing[r, 1] * slope_start + rods_bowing[r, 2] * slope_end
+        tried = axial_force
+        elongation = straight + 0.5 * rest * (slope_start * bow_start + slope_end * bow_end)
+        insert(axial_force)
+        missed = tried - axial_force
+        if abs(missed) <= close:
+            break
+        softer = softening(
+            thrust, bow_start, bow_end, slip_start, slip_end, insert(end_stiffness), insert(bowing)
+        )
+        here = axial_force
+        elongation += 1e-6 * rest
+        insert(axial_force)
+        stiffness = max(axial_force - here, 0.0) / (1e-6 * rest)
+        steepness = 1.0 + stiffness * rest * rest * softer if thrust > firm else 1.0
+        axial_force, low, high = narrowed(tried, missed, steepness, low, high)
+        if axial_force == tried:
+            break
+        thrust = max(axial_force * rest, firm)
+        moment_start = bent_start + thrust * pulled_start
+        moment_end = bent_end + thrust * pulled_end
+        slip_start, slip_end = insert(slips)
+    return slip_start, slip_end, moment_start, moment_end, thrust
 
 
 def tangent_of_ends():
-    """How moments and axial force follow slopes and elongation; `drawn`: the axial laws' stiffness × by_x."""
+    """How moments and axial force follow slopes and elongation; `drawn`: the axial laws' stiffness × by_x.
+
+    SLIPS: moments on ends that slip do not follow them, which condenses them like hinges.
+    """
     rod_work[2, r] = drawn * rest * bow_start
     rod_work[3, r] = drawn * rest * bow_end
     thrust = by_x * axial_force * rest
@@ -76,6 +155,25 @@ def tangent_of_ends():
     rod_work[5, r] = thrust * rods_bowing[r, 1] + bowed * bow_start * bow_end
     rod_work[6, r] = thrust * rods_bowing[r, 2] + bowed * bow_end * bow_end
     insert(by_slopes)
+    if SLIPS:
+        if slip_start != 0.0 and rod_work[4, r] > 0.0:
+            along = rod_work[2, r] / rod_work[4, r]
+            across = rod_work[5, r] / rod_work[4, r]
+            rod_work[0, r] -= along * rod_work[2, r]
+            rod_work[3, r] -= along * rod_work[5, r]
+            rod_work[6, r] -= across * rod_work[5, r]
+            rod_work[2, r] = 0.0
+            rod_work[4, r] = 0.0
+            rod_work[5, r] = 0.0
+        if slip_end != 0.0 and rod_work[6, r] > 0.0:
+            along = rod_work[3, r] / rod_work[6, r]
+            across = rod_work[5, r] / rod_work[6, r]
+            rod_work[0, r] -= along * rod_work[3, r]
+            rod_work[2, r] -= along * rod_work[5, r]
+            rod_work[4, r] -= across * rod_work[5, r]
+            rod_work[3, r] = 0.0
+            rod_work[5, r] = 0.0
+            rod_work[6, r] = 0.0
     insert(by_rates)
     insert(moments)
     rod_work[7, r] = by_x * (moment_start + moment_end) * inverse * inverse
@@ -109,6 +207,8 @@ def tangent_by():
 def end_moments():
     """Moments on the ends by the laws of ends (`law`), the axial force in the bowed axis, and what acts between the ends.
 
+    SLIPS: none passes its plastic moment, by round-off neither.
+
     Forces, along and across the chord, act on the bent axis, so that they make a couple. TURNED: couples act, too.
     """
     insert(law)
@@ -126,6 +226,9 @@ def end_moments():
             couple += rods_span_load[r, 6]
         moment_start -= across_start
         moment_end -= across_end
+    if SLIPS:
+        moment_start = min(max(moment_start, -rods_moment_limit[r, 0]), rods_moment_limit[r, 0])
+        moment_end = min(max(moment_end, -rods_moment_limit[r, 1]), rods_moment_limit[r, 1])
 
 
 def rate():
@@ -137,6 +240,32 @@ def rate():
         rate_end = spin_b - chord_spin
         if OF_AXIS:
             axis_rate = rate + rest * (bow_start * rate_start + bow_end * rate_end)
+
+
+def slip_rates():
+    """How fast the ends slip now (gain) and a little later (then), by states a part and two parts `ahead` of a step.
+
+    Limits a little lower tell an end that is about to slip or has just stopped from one that is elastic.
+    """
+    small = insert(ahead) * dt
+    now_start, now_end, moment_start, moment_end, thrust = slipping(
+        r, insert(share), straight, free_start, free_end, nx, ny, *needed
+    )
+    ahead_start = free_start + rate_start * small
+    ahead_end = free_end + rate_end * small
+    soon_start, soon_end, soon_moment_start, soon_moment_end, soon_thrust = slipping(
+        r, insert(share), straight + rate * small, ahead_start, ahead_end, nx, ny, *needed
+    )
+    ahead_start += rate_start * small
+    ahead_end += rate_end * small
+    late_start, late_end, _, _, _ = slipping(
+        r, insert(share), straight + 2.0 * rate * small, ahead_start, ahead_end, nx, ny, *needed
+    )
+    gain_start = (soon_start - now_start) / small
+    gain_end = (soon_end - now_end) / small
+    then_start = (late_start - soon_start) / small
+    then_end = (late_end - soon_end) / small
+    axis_rate -= rest * (bow_start * gain_start + bow_end * gain_end)
 
 
 def stored():

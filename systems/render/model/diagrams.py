@@ -40,7 +40,7 @@ from pinjoint.systems.render.symbols import dashed
 from pinjoint.systems.render.theme import Colour, faded
 
 NAMES = {AXIAL: marked("axial force N"), MOMENT: marked("bending moment M"), SHEAR: marked("shear force V")}
-_UNITS = {AXIAL: "kN", MOMENT: "kN·m", SHEAR: "kN"}
+UNITS = {AXIAL: "kN", MOMENT: "kN·m", SHEAR: "kN"}
 _BESIDE = ("load", "load per length", "load moment", "reaction", "reaction moment", "ghost")
 EXPLAINED = {  # in the legend, at most: what they show, then what stands beside them
     AXIAL: ("tension", "compression", *_BESIDE),
@@ -111,7 +111,7 @@ class _Diagram:
 
     def at(self, which: Rows, shares: Values) -> tuple[Points, Points]:
         """Points at shares (k,) of some of its rods, and unit normals to where positive values stand."""
-        points, normals = _stations(self.base.some(which), shares[:, None], self.side[which])
+        points, normals = stations(self.base.some(which), shares[:, None], self.side[which])
         return points[:, 0], normals[:, 0]
 
 
@@ -134,8 +134,7 @@ def draw_diagrams(sheet: Sheet, taken: float = 0.0) -> None:
             sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST], rows[force[rows] < -SMALLEST]
         sheet.advise(tr("zoom in to see force diagrams"))
         return
-    window = min(sheet.viewport.width, sheet.viewport.height)  # what leaves the structure readable:
-    room = max(min(0.15 * window, 0.6 * length), 10.0 * sheet.unit)
+    room = diagram_room(sheet, length)
     diagram = (
         _curves(sheet, rows, quantity, min(_ROOM * room, MARGIN * sheet.unit), taken)
         if sheet.is_frame
@@ -145,6 +144,12 @@ def draw_diagrams(sheet: Sheet, taken: float = 0.0) -> None:
         _draw(sheet, diagram)
         _mark_zeros(sheet, diagram)
         _write(sheet, diagram)
+
+
+def diagram_room(sheet: Sheet, length: float) -> float:
+    """How high (pixels) diagrams of rods of such a length leave the structure readable."""
+    window = min(sheet.viewport.width, sheet.viewport.height)
+    return max(min(0.15 * window, 0.6 * length), 10.0 * sheet.unit)
 
 
 # --- rectangles, where none bends --------------------------------------------------------------------
@@ -232,35 +237,35 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) 
     if largest <= SMALLEST:
         return None
     side = np.full(len(every), -1.0 if quantity == MOMENT else 1.0)
-    fitting = max(largest, room * _crowding(sheet, every, side, taken))
+    few = every.with_kinks(np.linspace(0.0, 1.0, 5))
+    axes = stations(baseline(sheet, np.arange(len(every))), few, side)
+    fitting = max(largest, room * crowding(sheet, *axes, every.at(few), taken))
     scale = room * model.settings.diagram_scale / steady(sheet, (f"diagrams.{quantity}", 0), fitting)
     scale = min(scale, _FAR / largest)
-    base, curves, side = _baseline(sheet, rows), every.some(rows), side[rows]
+    base, curves, side = baseline(sheet, rows), every.some(rows), side[rows]
     most = np.clip(_PIECES // len(rows), 4, 24)  # more where rods are few and long
     shares = np.linspace(0.0, 1.0, int(np.clip(sheet.rod_length / (_PIECE * sheet.unit), 8, most)) + 1)
     shares = curves.with_kinks(shares)
-    points, normals = _stations(base, shares, side)
+    points, normals = stations(base, shares, side)
     heights = scale * curves.at(shares)
     found = _Diagram(quantity, rows, base, curves, scale, largest, side, points, normals, heights)
     near = (np.abs(points) < _FAR) & np.isfinite(normals)
     return found.some(np.asarray(near.all(axis=(1, 2))))
 
 
-def _crowding(sheet: Sheet, every: Curves, side: Values, taken: float) -> float:
-    """The value per pixel up to which diagrams of all rods keep off the legend and the rim; 0 where the view is closer."""
+def crowding(sheet: Sheet, points: Points, normals: Points, values: Values, taken: float) -> float:
+    """The value per pixel up to which diagrams keep off the legend and the rim; 0 where the view is closer."""
     view = sheet.view
     if not view.shows(sheet.model):
         return 0.0
-    shares = every.with_kinks(np.linspace(0.0, 1.0, 5))
-    points, normals = _stations(_baseline(sheet, np.arange(len(every))), shares, side)
     low, high = view.room.corners
     low[1] += taken
-    above = normals * every.at(shares)[..., None]
+    above = normals * values[..., None]
     free = np.maximum(np.where(above < 0.0, points - low, high - points), _LEAST * sheet.unit)
     return float(np.nan_to_num(np.abs(above) / free).max(initial=0.0))
 
 
-def _baseline(sheet: Sheet, rows: Rows) -> Axes:
+def baseline(sheet: Sheet, rows: Rows) -> Axes:
     """The axes of rods in pixels as drawn."""
     camera, found = sheet.view.camera, Axes.of(sheet.model, rows)
     left = found.left * [
@@ -271,7 +276,7 @@ def _baseline(sheet: Sheet, rows: Rows) -> Axes:
     return Axes(camera.to_pixels(found.start), camera.to_pixels(found.end), left, found.bow, drift)
 
 
-def _stations(base: Axes, shares: Values, side: Values) -> tuple[Points, Points]:
+def stations(base: Axes, shares: Values, side: Values) -> tuple[Points, Points]:
     """Points of baselines in pixels, and unit normals to the left as drawn, or where `side` is −1 to the right."""
     x, y = np.moveaxis(base.tangents(shares), -1, 0)
     left = np.stack([y, -x], axis=-1) / np.maximum(np.hypot(x, y), 1e-300)[..., None]
@@ -436,7 +441,7 @@ def _written(sheet: Sheet, quantity: str, value: float, nothing: float, few: boo
     """A value as it is told: moments without sign, since their side says it; shear with both."""
     size = abs(value) if quantity == MOMENT else value
     sign = "+" if quantity == SHEAR and value > nothing else ""
-    return f"{sign}{said(sheet, size, _UNITS[quantity], nothing, bare=not few)}"
+    return f"{sign}{said(sheet, size, UNITS[quantity], nothing, bare=not few)}"
 
 
 def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:
@@ -526,7 +531,7 @@ def _ends_of_lines(sheet: Sheet, diagram: _Diagram, which: Rows, shares: Values,
     ].T
     along = shares[:, None] + np.clip(insets * sheet.unit / np.maximum(length, 1e-9), -0.4, 0.4)
     along = np.clip(along, 0.0, 1.0)
-    at, normal = _stations(diagram.base.some(which), along, diagram.side[which])
+    at, normal = stations(diagram.base.some(which), along, diagram.side[which])
     height = diagram.scale * diagram.curves.some(which).at(along)
     up = np.array([1.0, 0.0, 0.5]) * height[..., None]
     return (at[:, :, None] + up[..., None] * normal[:, :, None]).reshape(len(which), -1, 2)

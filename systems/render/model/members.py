@@ -7,7 +7,7 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.bent import Axes
 from pinjoint.components.cases import case_told, factor_of_each, permanent
-from pinjoint.components.rod import rigid_joints
+from pinjoint.components.rod import is_kinked, rigid_joints
 from pinjoint.components.spans import Spans
 from pinjoint.components.tags import DiagramShown
 from pinjoint.systems.render.labels.nearness import ranges
@@ -51,6 +51,8 @@ from pinjoint.systems.render.theme import Colour
 
 _HINGE = 3.5  # points, radius of a hinge beside a joint
 _SPIRAL = 6.0  # likewise of a spring
+_PLASTIC = 3.0, 6.0  # likewise of plastic hinges that have not turned, and of that which turned farthest
+_ROUND_HINGE, _LEAST_TURNED = 4.0, 0.02  # points between one and its arrow; share of the farthest that has one
 _SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn
 # Points, lengths of the arrows of the smallest and the largest distributed force, usually and beside diagrams.
 _ROW, _LOW_ROW = (11.0, 22.0), (5.0, 11.0)
@@ -76,17 +78,10 @@ def draw_hinges(sheet: Sheet) -> None:
         return
     rigid, u = rigid_joints(model), sheet.unit
     fixity = model.rods.fixity[sheet.rods]
-    free = (fixity < 1.0) & rigid[sheet.ends[sheet.rods]]
-    length = np.hypot(*(sheet.end - sheet.start).T)
-    free &= (length > 2.0 * _SHORTEST * _HINGE * u)[:, None]
-    which, end = np.nonzero(free)
+    which, end, joint, out = _ends(sheet, (fixity < 1.0) & rigid[sheet.ends[sheet.rods]], _HINGE)
     if not len(which):
         return
     rows = sheet.rods[which]
-    tangent = Axes.of(model, rows).tangents(np.array([0.0, 1.0])) * np.array([1.0, -1.0])  # y down
-    out = tangent[np.arange(len(rows)), end] * np.where(end == 0, 1.0, -1.0)[:, None]
-    out /= np.maximum(np.hypot(*out.T), 1e-300)[:, None]
-    joint = sheet.ends[rows, end]
     sprung = fixity[which, end] > 0.0
     radius = np.where(sprung, _SPIRAL, _HINGE) * u
     at = sheet.centres[joint] + (sheet.radii[joint] + radius + 0.5 * u)[:, None] * out
@@ -104,6 +99,46 @@ def draw_hinges(sheet: Sheet) -> None:
         row, side = int(rows[k]), int(end[k])
         stiffness, key = float(model.rods.end_springs[row, side]), ("rods.end_springs", 2 * row + side)
         write_spring(sheet, at[k], _SPIRAL * u, stiffness, "kN·m/rad", key, ("rods", row))
+
+
+def draw_plastic_hinges(sheet: Sheet) -> None:
+    """Filled circles at the ends of rods that yield or have yielded in bending, the larger the farther they turned, with an
+    arrow the way in which each turned against its joint."""
+    rods = sheet.model.rods
+    if not (sheet.view.forces_known and is_kinked(sheet.model)):
+        return
+    turned = np.abs(rods.plastic_rotation)
+    there = (rods.hinge_yielding | (turned > 0.0))[sheet.rods]
+    which, end, joint, out = _ends(sheet, there, _PLASTIC[1])
+    if not len(which):
+        return
+    rows, u, colour = sheet.rods[which], sheet.unit, sheet.theme.yielding
+    share = turned[rows, end] / max(float(turned.max()), 1e-300)
+    radius = (_PLASTIC[0] + (_PLASTIC[1] - _PLASTIC[0]) * np.sqrt(share)) * u
+    fixity = rods.fixity[rows, end]
+    past = np.where(fixity < 1.0, 2.0 * _SPIRAL * u, 0.0)  # the spring that stands there
+    at = sheet.centres[joint] + (sheet.radii[joint] + past + radius + 0.5 * u)[:, None] * out
+    of = "rods", rows
+    sheet.occupancy.parts.add(of, at, at, radius)
+    sheet.occupancy.block_squares(at, radius)
+    sheet.marks.append(Discs(at, radius, colour, colour, 0.0, of))
+    sheet.explain("plastic hinge", at, at)
+    seen = share > _LEAST_TURNED if len(rows) <= MOST else np.zeros(len(rows), dtype=bool)
+    sense = -rods.plastic_rotation[rows, end][seen]
+    key, around = "rods.plastic_rotation", radius[seen] + _ROUND_HINGE * u
+    draw_arcs(sheet, ("rods", rows[seen]), at[seen], around, sense, colour, key, sweep=np.pi, pieces=8)
+
+
+def _ends(sheet: Sheet, wanted: Truths, radius: float) -> tuple[Rows, Rows, Rows, Points]:
+    """Of ends that are wanted, (rods, 2), of rods long enough for circles of this radius (points) beside their joints: their
+    places among the drawn rods, which ends they are, their joints, and unit vectors from these along the axes."""
+    length = np.hypot(*(sheet.end - sheet.start).T)
+    which, end = np.nonzero(wanted & (length > 2.0 * _SHORTEST * radius * sheet.unit)[:, None])
+    rows = sheet.rods[which]
+    tangent = Axes.of(sheet.model, rows).tangents(np.array([0.0, 1.0])) * np.array([1.0, -1.0])  # y down
+    out = tangent[np.arange(len(rows)), end] * np.where(end == 0, 1.0, -1.0)[:, None]
+    out /= np.maximum(np.hypot(*out.T), 1e-300)[:, None]
+    return which, end, sheet.ends[rows, end], out
 
 
 def draw_inextensible(sheet: Sheet) -> None:
@@ -353,6 +388,7 @@ def draw_arcs(
     key: str,
     middle: float = np.pi / 2.0,
     sweep: float = _SWEEP,
+    pieces: int = _PIECES,
 ) -> None:
     """Curved arrows about points (n, 2), of radii (n,), that turn as moments (n,) do, counter-clockwise if positive.
 
@@ -364,11 +400,11 @@ def draw_arcs(
     table, rows = of
     u, turn = sheet.unit, np.where(moment > 0.0, 1.0, -1.0)
     head = head_length(radius, u)
-    angle = np.linspace(-0.5, 0.5, _PIECES + 1) * sweep
+    angle = np.linspace(-0.5, 0.5, pieces + 1) * sweep
     angle = middle + turn[:, None] * angle  # from the right, over the top
     points = at[:, None] + radius[:, None, None] * np.stack([np.cos(angle), -np.sin(angle)], axis=2)
     first, last = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2)
-    every = np.repeat(rows, _PIECES)
+    every = np.repeat(rows, pieces)
     forward = points[:, -1] - points[:, -2]
     forward /= np.hypot(*forward.T)[:, None]
     neck, across = points[:, -1], forward[:, ::-1] * [-1.0, 1.0]

@@ -35,6 +35,8 @@ _TILE, _TILE_GAP, _CAPTION, _PROPORTION = 172.0, 16.0, 38.0, 0.6
 _PILL, _PILL_WIDTH = 40.0, 184.0  # points: tiles without pictures
 # Points of width from which the name stands beside the heading; that it takes.
 _BESIDE, _NAMES = 985.0, (412.0, 492.0)
+# Points: of the title of the box for a folder; from which it shares a row with the name, which has this share of it.
+_FOLDER, _SHARED, _SHARE_OF_NAME = 40.0, 480.0, 0.62
 _LOWEST, _LEAST_PICTURE = 0.65, 24.0  # of a picture's height that it keeps where one more row fits then; points
 _SECTIONS_SEEN = 2  # with pictures, that begin in sight in any window
 _EXPLAINED, _MOST_EXPLAINED = 2, 6  # lines of explanation: of boxes, and at most
@@ -132,15 +134,24 @@ class FormLayout:
         if self.files is None:
             return [Row((title, close), 8.0, high=28.0)]
         beside = self.width >= _BESIDE * u
-        wide = min(_NAMES[not beside], self.width / u)
+        shares = not beside and self.width >= _SHARED * u
+        wide = _SHARE_OF_NAME * self.width / u if shares else min(_NAMES[not beside], self.width / u)
         name = bare_box(self.files, (wide - 80.0) * u, theme, u, selected=self.files is self.selected, grow=1.0)
         said = Text(tr(self.form.accept), 13.0, theme.text, "semibold", "centre", grow=1.0)
         inside = Row((said,), around=(8.0, 0.0, 0.0), wide=64.0)
         accept = button(inside, None, theme, stands_out=True, item="accept", inset=0.0)
         both = Row((name, accept), 8.0, wide=wide, high=26.0)
+        room = (1.0 - _SHARE_OF_NAME * shares) * self.width - (_FOLDER + 32.0) * u
+        others = [self._beside_title(box, room) for box in self.form.boxes if box is not self.files]
         if beside:
-            return [Row((title, both, close), 8.0, high=28.0)]
-        return [Row((title, close), 8.0, high=28.0), Gap(high=6.0), Row((both, Gap(grow=1.0)))]
+            return [Row((title, both, close), 8.0, high=28.0), Gap(high=5.0), *others]
+        rows = [Row((both, *others), 16.0)] if shares else [Row((both,)), Gap(high=5.0), *others]
+        return [Row((title, close), 8.0, high=28.0), Gap(high=6.0), *rows]
+
+    def _beside_title(self, box: Box, room: float) -> Row:
+        """A box with its title in front of it."""
+        bare = bare_box(box, room, self.theme, self.u, selected=box is self.selected, grow=1.0)
+        return Row((Text(box.said_title, 12.0, self.theme.muted), bare), 8.0, high=26.0, grow=1.0)
 
     def _footer(self, hint: str, hovered: object) -> Column:
         """The explanation of what is pointed at, chosen or selected, and the next possible steps."""

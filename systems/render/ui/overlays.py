@@ -14,14 +14,14 @@ from pinjoint.components.bent import farthest
 from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.cases import acting
 from pinjoint.components.field import on_screen
-from pinjoint.components.language import begun, marked, plural, tr
+from pinjoint.components.language import begun, listed, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES, THEORIES
 from pinjoint.components.view import BETWEEN, LEAST_MODEL
 from pinjoint.systems.render import marks
 from pinjoint.systems.render.labels.occupancy import STRONG
 from pinjoint.systems.render.labels.placing import GIVEN, Numbered, Placed
-from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes
+from pinjoint.systems.render.marks import Discs, Mark, Panel, Stamps, Strokes
 from pinjoint.systems.render.model.diagrams import EXPLAINED
 from pinjoint.systems.render.model.sheet import Sheet
 from pinjoint.systems.render.model.structure import HALO_OPACITY
@@ -257,6 +257,7 @@ MEANINGS = {
     "inertia": marked("inertia −m a"),
     "velocity": marked("velocity"),
     "hinge": marked("hinge"),
+    "plastic hinge": marked("plastic hinge"),
     "spring": marked("spring"),
     "inextensible": marked("inextensible"),
     "ghost": marked("undeformed"),
@@ -301,7 +302,10 @@ def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark],
     v, u, theme = sheet.viewport, sheet.unit, sheet.theme
     meanings = meanings_of([*sheet.legend, *_theory(sheet)]) if sheet.view.legend and sheet.legend else {}
     if meanings and (said := acting(sheet.model)):
-        meanings[_ACTING] = said
+        shown = sheet.view.enveloped
+        meanings[_ACTING] = (
+            said if shown is None else tr("envelope of {names}", names=listed(shown.combinations))
+        )
     if not meanings or v.width < LEAST_MODEL * u:
         return [], heading_end
     plates, beside = _arranged(tuple(meanings.items()), theme, v.width, right - v.left, u)
@@ -361,11 +365,15 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
     if name in _SCALES:
         return scale_bar(theme, x, y, width, u)
     in_ink = ("slack", "hinge", "spring", "inextensible", "moment", "shear", "velocity", "inertia")
-    drawn_in = {"first": "yielding", "deflected": "sketch"} | dict.fromkeys(in_ink, "ink")
+    drawn_in = {"first": "yielding", "plastic hinge": "yielding", "deflected": "sketch"} | dict.fromkeys(
+        in_ink, "ink"
+    )
     colour = getattr(theme, drawn_in.get(name, name))
     ends = np.array([[x, y]]), np.array([[x + width, y]])
     if name == "hinge":
         return [Stamps("ring", ends[0] + [width / 2, 0.0], 4.0 * u, u, theme.ink, theme.hollow)]
+    if name == "plastic hinge":
+        return [Discs(ends[0] + [width / 2, 0.0], np.array([4.5 * u]), colour, colour)]
     if name == "inextensible":
         left, right = (x + width / 2 + shift * u for shift in (-2.0, 2.0))
         above, below = (np.array([[left, y + dy * u], [right, y + dy * u]]) for dy in (-5.0, 5.0))

@@ -151,6 +151,39 @@ def test_hinges_are_open_and_rigid_joints_filled() -> None:
     assert "hinge" in picture.texts
 
 
+def test_plastic_hinges_are_filled_the_larger_the_farther_they_turned_with_an_arrow_the_way_they_did() -> None:
+    source = portal()
+    for rod in source["rods"]:
+        rod["plastic_moment"] = 1e6
+    session = opened(source)
+    model = session.model
+    assert "plastic hinge" not in drawn(session).texts
+    model.writable("rods.plastic_rotation")[0] = (0.1, 0.0)
+    model.writable("rods.plastic_rotation")[1] = (0.0, -0.4)
+    session.run(steps=1)
+    picture = drawn(session)
+    [hinges] = [m for m in picture.marks if isinstance(m, Discs) and m.ink == LIGHT.yielding and m.of]
+    assert list(hinges.of[1]) == [0, 1]
+    assert (hinges.rim, hinges.hollow) == (0.0, LIGHT.yielding)
+    assert hinges.radius[1] > hinges.radius[0] > 0.0
+    for at, rod, end in zip(hinges.at, (0, 1), (0, 1), strict=True):
+        ends = (
+            model.particles.position[model.rods.between[rod]]
+            + model.particles.displacement[model.rods.between[rod]]
+        )
+        joint, other = session.view.camera.to_pixels(ends)[[end, 1 - end]]
+        away, way = at - joint, other - joint
+        assert 3.0 < np.hypot(*away) < 30.0
+        assert away @ way / np.hypot(*away) / np.hypot(*way) > 0.8, "along its own rod"
+    arrows = [m for m in picture.marks if isinstance(m, Fills) and m.colour == LIGHT.yielding]
+    assert [list(m.of[1]) for m in arrows if m.of] == [[0, 1]]
+    tips, necks = arrows[0].corners[:, 0], arrows[0].corners[:, 1:].mean(axis=1)
+    out, forward = tips - hinges.at, tips - necks
+    turns = out[:, 0] * forward[:, 1] - out[:, 1] * forward[:, 0]
+    assert (np.sign(turns) == [1.0, -1.0]).all(), "y down: the rod turns the other way than its joint"
+    assert "plastic hinge" in picture.texts
+
+
 def test_distributed_forces_are_rows_of_arrows_that_end_at_the_member() -> None:
     session = opened(portal())
     picture = drawn(session)
