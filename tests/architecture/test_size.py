@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 71_296,
+    "lines": 71_338,
     "files": 383,
-    "names": 3_931,  # functions, classes and constants of modules
-    "public names": 2_334,
-    "numbers": 1_513,  # other than 0, 1 and 2, in constants and defaults
+    "names": 3_933,  # functions, classes and constants of modules
+    "public names": 2_336,
+    "numbers": 1_514,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 57_347,
+    "lines of tests": 57_562,
 }
 
 

@@ -15,9 +15,9 @@ from pinjoint.commands.command_line import main
 from pinjoint.documents import models
 from pinjoint.results import Results
 from pinjoint.systems.statics.equations import Structure
-from pinjoint.systems.statics.force_method import MethodError
 from pinjoint.systems.statics.settle import Settlement, settle
 from pinjoint.systems.statics.state import Start
+from pinjoint.systems.statics.unknowns import MethodError
 from tests.reference.models import model
 from tests.reference.plastic_hinges import Frame
 from tests.verification.test_frame_theory import free, held
