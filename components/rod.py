@@ -571,6 +571,12 @@ def can_yield(world: World) -> bool:
     return bool(world.tables["settings"].plasticity[0]) and has_strength(world)
 
 
+def can_collapse(world: World) -> bool:
+    """True if some force or moment in rods has a limit, so that limit analysis has an answer."""
+    limited = world.tables["settings"].plasticity[0] and not np.isnan(world.tables["rods"].plastic_moment).all()
+    return bool(limited) or can_yield(world) or has_struts(world)
+
+
 def can_hinge(world: World) -> bool:
     """True if plasticity is on and some end of a rod has a plastic moment."""
     return bool(world.tables["settings"].plasticity[0]) and has_plastic_moments(world)

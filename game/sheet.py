@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -17,6 +18,7 @@ from pinjoint.components.rod import bends
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.view import Shape
 from pinjoint.documents.models import document, load
+from pinjoint.documents.shapes import collapse_shapes
 from pinjoint.documents.statics import Statics
 from pinjoint.figures import diagram_titles, figure, printed, shape, signs
 from pinjoint.results import Results, envelope_of_reactions, envelope_of_rods
@@ -65,7 +67,9 @@ class Solved:
             reason = statics.message
             raise NoSheet("There is no sheet without an equilibrium. {reason}", reason=reason)
         _, note = settlement.beside(left_out_of_statics(copy))
-        self.said = joined([settlement.message, note])
+        limit = statics.limit_load
+        self.said = joined([settlement.message, note, *([limit.message, limit.divides(copy)] if limit else [])])
+        self.collapse = collapse_shapes(copy) if limit else []
         copy.show(statics)
         self.results = Results.of(copy)
         self.envelope = statics.envelope() if enveloped else None
@@ -85,6 +89,7 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
         if bends(model) or quantity == AXIAL:
             figures.append(draw(title, diagrams=quantity))
     figures.append(draw(tr("Deflected shape"), moved=True))
+    figures += [draw(shape.title, over=replace(shape, title="")) for shape in solved.collapse]
     figures += [draw(shape.title, over=shape) for shape in shapes]
     if (envelope := solved.envelope) is not None:
         for quantity, title in diagram_titles().items():

@@ -17,9 +17,8 @@ import numpy as np
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, forces_along, inner_forces
 from pinjoint.components.cases import Acting, choose, settled
 from pinjoint.components.derived import initial_slopes, moments_along, on_joints, unforced
-from pinjoint.components.field import Column
+from pinjoint.components.field import Column, FieldError
 from pinjoint.components.language import tr
-from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.spans import Curves, Kinks, extremes
@@ -225,10 +224,10 @@ class Envelope:
         known = model.settings.combinations
         for name in names:
             if name not in known:
-                raise WrongValue(missing(tr("combinations"), name, known))
+                raise FieldError(missing(tr("combinations"), name, known))
         chosen = {name: known[name] for name in list(names) or known}
         if not chosen:
-            raise WrongValue("The model has no combinations; give it some in settings.combinations.")
+            raise FieldError("The model has no combinations; give it some in settings.combinations.")
         parts: dict[str, States] = {}
         if theory == FIRST_ORDER and _superposes(model, permanent):
             found, true = States.superposed(model, chosen, factors[-1])

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from pinjoint.components.camera import Viewport
+from pinjoint.components.cases import acting
 from pinjoint.components.field import Vector
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
@@ -175,6 +176,7 @@ class Method(Scene):
             self._head.heading, part = self._work.text, tr("Working")
         hint = joined([tr("still moving") if self._moving() else "", self.hint(context)], BETWEEN)
         hint = joined([tr("Wheel more rows") if foot < wanted else "", hint], BETWEEN)
+        part = joined([part, acting(context.model)], ": ")
         self._foot.status = Status(time=None, state=part, hint=hint)
         self._head.legend = context.view.legend and whole.height >= _LEAST_EXPLAINED * ratio
         explained = self._explained() if self._head.legend else ()
