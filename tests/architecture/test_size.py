@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 71_751,
-    "files": 384,
-    "names": 3_946,  # functions, classes and constants of modules
-    "public names": 2_346,
-    "numbers": 1_520,  # other than 0, 1 and 2, in constants and defaults
+    "lines": 71_837,
+    "files": 385,
+    "names": 3_951,  # functions, classes and constants of modules
+    "public names": 2_349,
+    "numbers": 1_522,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 58_023,
+    "lines of tests": 58_038,
 }
 
 
