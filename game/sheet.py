@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 from reportlab.platypus import CondPageBreak, Flowable, KeepTogether
 
+from pinjoint.collapse_steps import collapse_steps
 from pinjoint.components.bent import AXIAL
 from pinjoint.components.cases import acting
 from pinjoint.components.language import joined, listed, tr
@@ -70,6 +71,7 @@ class Solved:
         limit = statics.limit_load
         self.said = joined([settlement.message, note, *([limit.message, limit.divides(copy)] if limit else [])])
         self.collapse = collapse_shapes(copy) if limit else []
+        self.steps = collapse_steps(copy) if limit and theory == FIRST_ORDER else None
         copy.show(statics)
         self.results = Results.of(copy)
         self.envelope = statics.envelope() if enveloped else None
@@ -106,6 +108,8 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
     if envelope is not None:
         tables[tr("Envelope")] = printed(layout, envelope_of_rods(model, envelope))
         tables[tr("Envelope of reactions")] = printed(layout, envelope_of_reactions(model, envelope))
+    if solved.steps is not None:
+        tables[tr("Hinge by hinge")] = printed(layout, solved.steps)
     below = [(layout.text(title, "heading"), blocks) for title, blocks in tables.items()]
     if model.rods.count <= _BESIDE:
         title, [(width, parts), *_] = below.pop(0)

@@ -249,9 +249,16 @@ def _limit_load(model: Model, theory: str) -> Run:
     """The collapse load by limit analysis, beside first-order statics of models that it has an answer for."""
     if theory != FIRST_ORDER or not can_collapse(model):
         return {}
+    from pinjoint.collapse_steps import collapse_steps
     from pinjoint.systems.statics.limit_analysis import LimitLoad
 
-    return {"limit_load": LimitLoad.of(model).record(model)}
+    found: State = {"limit_load": LimitLoad.of(model).record(model), "steps": []}
+    if (steps := collapse_steps(model)) is not None:
+        heads, *rows = steps.rows()
+        found["steps"] = [
+            {"step": row[0], **dict(zip(map(str, heads[1:]), row[1:], strict=True))} for row in rows
+        ]
+    return found
 
 
 def _interrupted(simulation: Simulation, name: str, states: list[State]) -> Run:

@@ -35,6 +35,9 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.settle import Settlement
     from pinjoint.systems.statics.state import StaticState
 
+PLASTIC = frozenset(
+    ("yield", "hinge", "buckling", "plastic mechanism", "collapse")
+)  # kinds of events beyond the elastic range
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
 _MOST_COMPARED = 300  # rods, up to which both theories take a moment only
 REST = 0.2  # s without an edit, after which a window compares them
@@ -295,12 +298,12 @@ class Statics:
         """What limit analysis says beside load steps that went beyond the elastic range, "" if they did not; and whether
         members have to be divided for both to agree. elapsed: not None: once the hand has rested.
         """
-        settlement, beyond = self.settlement, {"yield", "hinge", "buckling", "plastic mechanism", "collapse"}
+        settlement = self.settlement
         if self.is_late or settlement is None or (elapsed is not None and self._rest[1] < REST):
             return "", False
         limit = self.limit_load
         passed = limit is not None and limit.factor < max(self._model.settings.load_steps)
-        if limit is None or not (passed or beyond & {event.kind for event in settlement.events}):
+        if limit is None or not (passed or not PLASTIC.isdisjoint(event.kind for event in settlement.events)):
             return "", False
         divides = limit.divides(self._model) if passed else ""
         return joined([limit.message, divides]), bool(divides)
