@@ -337,12 +337,12 @@ def curved_lines(model: Model, fineness: float, rows: Rows | None = None) -> Lin
 def borne_between(model: Model, acting: Acting | None = None) -> Array:
     """What of the force (kN) on each particle acts between the ends of rods, (particles, 2).
 
-    acting: combinations, of which these follow one another.
+    acting: combinations, whole, of which these follow one another; None: as much as acts in what the model shows.
     """
     rods, count, between = (
         model.rods,
         1 if acting is None else len(acting.permanent),
-        Kinks.of(model, model.share, acting),
+        Kinks.of(model, model.share if acting is None else 1.0, acting),
     )
     found = np.zeros((count, model.particles.count, 2))
     if len(between.row):

@@ -67,7 +67,9 @@ class Model(World):
         """The same document at the beginning of time: only moved supports are displaced, and rods strained for good."""
         copy = Model()
         for name, table in self.tables.items():
-            kept = [field.name for field in table.fields_in(*MADE)] + ["plastic_strain"] * (name == "rods")
+            kept = [field.name for field in table.fields_in(*MADE)] + (
+                ["plastic_strain", "plastic_rotation"] if name == "rods" else []
+            )
             columns = {field: table.column(field) for field in kept}
             if name == "particles":
                 columns["displacement"] = of_rigid_supports(self, table.storage("displacement"))

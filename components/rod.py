@@ -571,6 +571,12 @@ def can_yield(world: World) -> bool:
     return bool(world.tables["settings"].plasticity[0]) and has_strength(world)
 
 
+def can_collapse(world: World) -> bool:
+    """True if some force or moment in rods has a limit, so that limit analysis has an answer."""
+    limited = world.tables["settings"].plasticity[0] and not np.isnan(world.tables["rods"].plastic_moment).all()
+    return bool(limited) or can_yield(world) or has_struts(world)
+
+
 def can_hinge(world: World) -> bool:
     """True if plasticity is on and some end of a rod has a plastic moment."""
     return bool(world.tables["settings"].plasticity[0]) and has_plastic_moments(world)
@@ -608,18 +614,18 @@ def thrust(world: World) -> NDArray[np.float64]:
     return found
 
 
-def reduced_plastic_moment(world: World) -> NDArray[np.float64]:
-    """M_p beside axial forces, 1.18 M_p (1 − n) ≤ M_p with n as of `thrust`, (rods,); NaN without a plastic moment.
+def beside_thrust(share: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The share of a plastic moment that remains beside a share n of the axial strength, 1.18 (1 − n) ≤ 1.
 
-    Of I-sections bent in the plane of their webs [B. G. Neal, 1977]. Hinges do not heed it; it is for checking.
+    Of I-sections bent in the plane of their webs [B. G. Neal, 1977].
     """
-    rods = world.tables["rods"]
-    limit = rods.moment_limit.min(axis=1)
-    share = np.clip(1.18 * (1.0 - thrust(world)), 0.0, 1.0)
-    found: NDArray[np.float64] = np.where(
-        np.isfinite(limit), share * np.where(np.isfinite(limit), limit, 0.0), np.nan
-    )
-    return found
+    return np.clip(1.18 * (1.0 - share), 0.0, 1.0)
+
+
+def reduced_plastic_moment(world: World) -> NDArray[np.float64]:
+    """M_p beside axial forces, (rods,), for checking; NaN without a plastic moment. Hinges do not heed it."""
+    limit = world.tables["rods"].moment_limit.min(axis=1)
+    return beside_thrust(thrust(world)) * np.where(np.isfinite(limit), limit, np.nan)
 
 
 def utilisation(world: World) -> NDArray[np.float64]:

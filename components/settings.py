@@ -72,7 +72,9 @@ class Settings(Handle):
         default=AUTOMATIC, dtype=str, doc="The method that advances time.", choices=INTEGRATORS
     )
     collisions: Field[bool] = Field(dtype=bool, default=True, doc="Particles collide.")
-    plasticity: Field[bool] = Field(dtype=bool, default=True, doc="Rods with a strength yield.")
+    plasticity: Field[bool] = Field(
+        dtype=bool, default=True, doc="Rods with a strength or a plastic moment yield."
+    )
     sleeping: Field[bool] = Field(
         dtype=bool,
         default=True,

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from reportlab.platypus import CondPageBreak, Flowable, KeepTogether
 
+from pinjoint.collapse_steps import collapse_steps
 from pinjoint.components.bent import AXIAL
 from pinjoint.components.cases import acting
 from pinjoint.components.language import joined, listed, tr
@@ -17,6 +19,7 @@ from pinjoint.components.rod import bends
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.view import Shape
 from pinjoint.documents.models import document, load
+from pinjoint.documents.shapes import collapse_shapes
 from pinjoint.documents.statics import Statics
 from pinjoint.figures import diagram_titles, figure, printed, shape, signs
 from pinjoint.results import Results, envelope_of_reactions, envelope_of_rods
@@ -65,7 +68,10 @@ class Solved:
             reason = statics.message
             raise NoSheet("There is no sheet without an equilibrium. {reason}", reason=reason)
         _, note = settlement.beside(left_out_of_statics(copy))
-        self.said = joined([settlement.message, note])
+        limit = statics.limit_load
+        self.said = joined([settlement.message, note, *([limit.message, limit.divides(copy)] if limit else [])])
+        self.collapse = collapse_shapes(copy) if limit else []
+        self.steps = collapse_steps(copy) if limit and theory == FIRST_ORDER else None
         copy.show(statics)
         self.results = Results.of(copy)
         self.envelope = statics.envelope() if enveloped else None
@@ -85,6 +91,7 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
         if bends(model) or quantity == AXIAL:
             figures.append(draw(title, diagrams=quantity))
     figures.append(draw(tr("Deflected shape"), moved=True))
+    figures += [draw(shape.title, over=replace(shape, title="")) for shape in solved.collapse]
     figures += [draw(shape.title, over=shape) for shape in shapes]
     if (envelope := solved.envelope) is not None:
         for quantity, title in diagram_titles().items():
@@ -101,6 +108,8 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
     if envelope is not None:
         tables[tr("Envelope")] = printed(layout, envelope_of_rods(model, envelope))
         tables[tr("Envelope of reactions")] = printed(layout, envelope_of_reactions(model, envelope))
+    if solved.steps is not None:
+        tables[tr("Hinge by hinge")] = printed(layout, solved.steps)
     below = [(layout.text(title, "heading"), blocks) for title, blocks in tables.items()]
     if model.rods.count <= _BESIDE:
         title, [(width, parts), *_] = below.pop(0)

@@ -17,10 +17,10 @@ from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, bearing, bends, has_plastic_moments, has_struts
+from pinjoint.components.rod import Rod, bearing, bends, can_collapse, has_plastic_moments, has_struts
 from pinjoint.components.settings import AUTOMATIC
 from pinjoint.components.table import fields_of
-from pinjoint.components.theory import EXACT
+from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.mods.mod import ModError, check_mods, heeding_mods
 from pinjoint.paths import ENERGIES
 from pinjoint.systems.base import DEFAULT_LIMIT, StopReason
@@ -208,6 +208,7 @@ class Analysis:
             "left_out": left_out,
             "wall_seconds": seconds,
             "events": [event.record(model) for event in settlement.events],
+            **_limit_load(model, self.theory),
         }
 
     def settled_in(self, model: Model, name: str) -> Run:
@@ -242,6 +243,22 @@ class Analysis:
             "events": [*hinge_records(session.model), *happened, *remarks],
             "error_estimate": error.record(bent=bends(session.model)) if error is not None else None,
         }
+
+
+def _limit_load(model: Model, theory: str) -> Run:
+    """The collapse load by limit analysis, beside first-order statics of models that it has an answer for."""
+    if theory != FIRST_ORDER or not can_collapse(model):
+        return {}
+    from pinjoint.collapse_steps import collapse_steps
+    from pinjoint.systems.statics.limit_analysis import LimitLoad
+
+    found: State = {"limit_load": LimitLoad.of(model).record(model), "steps": []}
+    if (steps := collapse_steps(model)) is not None:
+        heads, *rows = steps.rows()
+        found["steps"] = [
+            {"step": row[0], **dict(zip(map(str, heads[1:]), row[1:], strict=True))} for row in rows
+        ]
+    return found
 
 
 def _interrupted(simulation: Simulation, name: str, states: list[State]) -> Run:

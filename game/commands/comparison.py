@@ -13,12 +13,13 @@ from pinjoint.commands.influence import NOTHING
 from pinjoint.commands.output import Row, aligned, as_written
 from pinjoint.components.language import decimals, joined, marked, plural, tr
 from pinjoint.components.model import Model
-from pinjoint.components.rod import euler_load
+from pinjoint.components.rod import can_collapse, euler_load
 from pinjoint.headless import Headless
 from pinjoint.systems.base import DEFAULT_LIMIT
 from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.statics.counting import Count
 from pinjoint.systems.statics.explain import describe_motion, listed
+from pinjoint.systems.statics.limit_analysis import LimitLoad
 from pinjoint.systems.statics.state import StaticState
 from pinjoint.systems.statics.theory import Indeterminacy, mechanisms, self_stress
 from pinjoint.systems.statics.verify import DEPARTURES, ELSEWHERE, QUANTITIES, Comparison, Theories
@@ -80,6 +81,8 @@ def compare(session: Headless, name: str, limit: float | None, *, simulate: bool
         differs = marked("differs from static theory") if departed else NOT_VERIFIED
         agreed = differs if comparison.differs else VERIFIED
         found["status"] = agreed if simulate else marked("theory only")
+    if can_collapse(model):
+        found["limit_load"] = LimitLoad.of(model).record(model)
     found["compression_members"] = _compression_members(model, theory.exact or theory.linear)
     found["message"] = "\n".join([*_left_out(session), *_messages(found)])
     return found
@@ -296,6 +299,8 @@ def lines(found: Found) -> Iterator[str]:
             values = [*map(as_written, frequencies[:SHOWN]), *(["…"] if len(frequencies) > SHOWN else [])]
             yield tr(said, values="  ".join(values))
     yield from filter(None, [found["frequencies_note"]])
+    if limit := found.get("limit_load"):
+        yield limit["message"]
     for quantity, (_, unit, title) in QUANTITIES.items():
         shown, factor = _IN_TABLES.get(unit, (unit, 1.0))
         rows = {f"{name} {tr(axis)}".rstrip(): values for name, axis, values in _values(found, quantity)}

@@ -125,6 +125,7 @@ def _parser() -> Parser:
         "also draw the Nth natural mode, 1 the lowest; of the loaded structure if it is at rest",
         int,
     )
+    flag(shape, "--collapse", "also draw the mechanism of collapse by limit analysis")
     option(shape, "--buckling-mode N", "also draw the Nth buckling mode, 1 the lowest", int)
     option(
         shape,
@@ -195,6 +196,8 @@ def _show_shape(session: Session, options: argparse.Namespace) -> None:
     for kind in ("mechanism", "mode", "buckling mode"):
         if (number := getattr(options, kind.replace(" ", "_"))) is not None:
             session.document.shapes.show(numbered(session.model, kind, number))
+    if options.collapse:
+        session.document.shapes.show(numbered(session.model, "collapse", 1))
     if options.influence is not None:
         from pinjoint.documents.influence import Influence  # it imports scipy
 

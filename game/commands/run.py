@@ -119,6 +119,12 @@ def lines(run: Run) -> Iterator[str]:
             yield tr("time {time} s, {steps} steps of {time_step} s, integrator {integrator}", **how)
         else:
             yield tr("time {time} s, {steps} steps, integrator {integrator}", **how)
+    if limit := run.get("limit_load"):
+        yield limit["message"]
+        if steps := run["steps"]:
+            yield ""
+            yield from aligned([[*steps[0]], *([*step.values()] for step in steps)])
+            yield ""
     if error := run.get("error_estimate"):
         known = {tr(title): as_written(error[key]) for key, title in _ERRORS.items() if key in error}
         yield tr("errors as shares of the largest value, measured by a run with finer steps:")

@@ -134,12 +134,13 @@ class Chronicle:
 
     def _hinges(self) -> list[Happening]:
         """Particles at which plastic hinges first formed, those of one instant together."""
-        found: dict[float, dict[str, None]] = {}
-        for record in hinge_records(self._model):
-            found.setdefault(record["time"], {})[record["particle"]] = None
+        first = {record["particle"]: record["time"] for record in reversed(hinge_records(self._model))}
+        found: dict[float, list[str]] = {}
+        for particle in reversed(first):
+            found.setdefault(first[particle], []).append(particle)
         return [
             self._happening(
-                "hinge", time, tr("A plastic hinge forms at {particles}.", particles=_listed(list(at))), (*at,)
+                "hinge", time, tr("A plastic hinge forms at {particles}.", particles=_listed(at)), tuple(at)
             )
             for time, at in found.items()
         ]
@@ -235,6 +236,8 @@ class Chronicle:
         yielding = np.flatnonzero(rods.yielding) if can_yield(model) else np.empty(0, dtype=np.intp)
         limit = np.minimum(rods.tension_limit, rods.compression_limit) / rods.stiffness
         worn = yielding[np.abs(rods.plastic_strain[yielding]) > COLLAPSED * limit[yielding]]
+        hinges = np.argwhere(rods.hinge_yielding) if can_hinge(model) else np.empty((0, 2), dtype=np.intp)
+        turned = np.abs(rods.plastic_rotation) * rods.end_stiffness[:, ::2] > COLLAPSED * rods.moment_limit
         if len(worn):  # what yields less may do so in an overshoot that ends before it matters
             names, at = tuple(rods.column("name")[worn].tolist()), rods.column("yielded_at")[worn].max()
             said = plural(
@@ -244,7 +247,16 @@ class Chronicle:
                 rods=_listed(names),
             )
             self._see("collapse", said, time=float(at))
-        elif not len(yielding) and not any(seen.kind == "collapse" for seen in self._seen):
+        elif len(hinges) and turned[*hinges.T].any():
+            rows, ends = hinges.T
+            at, where = rods.hinge_formed_at[rows, ends].max(), np.unique(rods.between[rows, ends])
+            names = tuple(model.particles.column("name")[where].tolist())
+            said = tr(
+                "The structure collapses: plastic hinges turn at {particles}, and nothing else resists.",
+                particles=_listed(names),
+            )
+            self._see("collapse", said, names, time=float(at))
+        elif not (len(yielding) or len(hinges) or any(seen.kind == "collapse" for seen in self._seen)):
             self._see("snap-through", tr("The structure snaps through into another shape."))
 
 

@@ -17,6 +17,7 @@ from pinjoint.components.language import marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.rod import can_collapse
 from pinjoint.components.view import Shape
 from pinjoint.components.wording import cut
 from pinjoint.documents.assessment import LARGEST
@@ -73,7 +74,9 @@ class Shapes:
         return math.cos(2.0 * math.pi * self._time / PERIOD)
 
     def next(self) -> None:
-        """Go on to the next: mechanisms, buckling by its load, modes by their frequency, then none. Raises NoShape."""
+        """Go on to the next: mechanisms, in statics collapse, buckling by its load, modes by their frequency, elsewhere
+        collapse, then none. Raises NoShape.
+        """
         self.go_through(lambda: _first_ones(self._model), begins=self.shown is None)
 
     def go_through(self, find: Callable[[], list[Shape]], *, begins: bool) -> None:
@@ -97,9 +100,11 @@ def _first_ones(model: Model) -> list[Shape]:
         )
     _check_range(model)
     found = mechanism_shapes(model, LOWEST)
+    collapse, solved = collapse_shapes(model), model.solution is not None
+    found += collapse * solved
     with suppress(NoShape):
         found += buckling_shapes(model, _LOWEST_BUCKLING, elastic=True)
-    found += mode_shapes(model, LOWEST)
+    found += mode_shapes(model, LOWEST) + collapse * (not solved)
     if not found:
         raise NoShape("There are no mechanisms and no modes, because no rod has an end that is free to move.")
     return found
@@ -215,6 +220,18 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     ]
 
 
+def collapse_shapes(model: Model) -> list[Shape]:
+    """The mechanism of limit analysis with its load factor, if there is one."""
+    from pinjoint.systems.statics.limit_analysis import COLLAPSE, LimitLoad
+
+    found = LimitLoad.of(model) if can_collapse(model) else None
+    if found is None or found.status != COLLAPSE:
+        return []
+    parts, motion = found.mechanism(model)
+    title = tr("Collapse by limit analysis: load × {factor}", factor=written.number(found.factor))
+    return [_shape(model, title, motion, None, found.divides(model), parts)]
+
+
 def last_motion(model: Model, settlement: Settlement) -> Shape | None:
     """The motion into which the last state passes that statics finds; None where that is an equilibrium."""
     motions = [event.motion for event in settlement.events if event.motion is not None]
@@ -225,9 +242,10 @@ def last_motion(model: Model, settlement: Settlement) -> Shape | None:
 
 
 def numbered(model: Model, kind: str, number: int) -> Shape:
-    """A "mechanism", "buckling mode" or "mode" by its number, from 1. Raises NoShape."""
+    """A "mechanism", "collapse", "buckling mode" or "mode" by its number, from 1. Raises NoShape."""
     find: dict[str, Callable[[Model], Sequence[Shape]]] = {
         marked("mechanism"): mechanism_shapes,
+        marked("collapse"): collapse_shapes,
         marked("buckling mode"): buckling_shapes,
         marked("mode"): mode_shapes,
     }
@@ -236,6 +254,8 @@ def numbered(model: Model, kind: str, number: int) -> Shape:
     if not found:
         if kind == "mechanism":
             raise NoShape("There is no mechanism: every motion stretches a rod.")
+        if kind == "collapse":
+            raise NoShape("At no load factor the structure collapses: no strength or plastic moment limits it.")
         raise NoShape("There is no mode: nothing can vibrate.")
     if not 1 <= number <= len(found):
         raise NoShape(

@@ -22,7 +22,7 @@ from pinjoint.components import written
 from pinjoint.components.field import Column, Role
 from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.model import Model
-from pinjoint.components.rod import nodes
+from pinjoint.components.rod import can_collapse, nodes
 from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.components.view import Shape
 from pinjoint.documents.shapes import last_motion
@@ -30,10 +30,14 @@ from pinjoint.systems.statics.behind import Behind
 
 if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.envelope import Envelope
+    from pinjoint.systems.statics.limit_analysis import LimitLoad
     from pinjoint.systems.statics.second_order import SecondOrder
     from pinjoint.systems.statics.settle import Settlement
     from pinjoint.systems.statics.state import StaticState
 
+PLASTIC = frozenset(
+    ("yield", "hinge", "buckling", "plastic mechanism", "collapse")
+)  # kinds of events beyond the elastic range
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
 _MOST_COMPARED = 300  # rods, up to which both theories take a moment only
 REST = 0.2  # s without an edit, after which a window compares them
@@ -76,6 +80,7 @@ class Statics:
         self.revision, self.offered = 0, -1
         # The revision of which the theories were compared, what came of it, the other one's way, the critical load factor.
         self._compared: tuple[int, SecondOrder | None, Settlement | None, float] = -1, None, None, np.inf
+        self._limit: tuple[int, LimitLoad] | None = None  # with the revision
         self._rest = -1, 0.0  # the revision that was asked for last, and since when (s)
         self.part = math.inf  # s of a frame, for solving
 
@@ -246,14 +251,14 @@ class Statics:
         another solution; None: at once.
         """
         settlement = self.settlement
+        if elapsed is not None:
+            self._rest = self.revision, self._rest[1] + elapsed if self._rest[0] == self.revision else 0.0
         if self.is_late or settlement is None or not settlement.final.balanced:
             return ""
         if not 0 < self._model.rods.count <= _MOST_COMPARED:
             return ""
-        if elapsed is not None:
-            self._rest = self.revision, self._rest[1] + elapsed if self._rest[0] == self.revision else 0.0
-            if self._rest[1] < REST:
-                return ""
+        if elapsed is not None and self._rest[1] < REST:
+            return ""
         if self._compared[0] != self.revision:
             from pinjoint.systems.statics.second_order import SecondOrder
 
@@ -275,6 +280,33 @@ class Statics:
             said = tr("exact: {status}", status=tr(compared.status))
         beyond = tr("above the critical load factor {factor}", factor=written.number(critical))
         return beyond if critical < self.share else said
+
+    @property
+    def limit_load(self) -> LimitLoad | None:
+        """The collapse load by limit analysis, up to date; None where nothing limits it, and of large structures."""
+        from pinjoint.systems.statics.limit_analysis import LimitLoad
+
+        model = self._model
+        if not 0 < model.rods.count <= _MOST_COMPARED or not can_collapse(model):
+            return None
+        if self._limit is None or self._limit[0] != self.revision:
+            with model.own_state():
+                self._limit = self.revision, LimitLoad.of(model)
+        return self._limit[1]
+
+    def collapse(self, elapsed: float | None = None) -> tuple[str, bool]:
+        """What limit analysis says beside load steps that went beyond the elastic range, "" if they did not; and whether
+        members have to be divided for both to agree. elapsed: not None: once the hand has rested.
+        """
+        settlement = self.settlement
+        if self.is_late or settlement is None or (elapsed is not None and self._rest[1] < REST):
+            return "", False
+        limit = self.limit_load
+        passed = limit is not None and limit.factor < max(self._model.settings.load_steps)
+        if limit is None or not (passed or not PLASTIC.isdisjoint(event.kind for event in settlement.events)):
+            return "", False
+        divides = limit.divides(self._model) if passed else ""
+        return joined([limit.message, divides]), bool(divides)
 
     def _critical(self, exact: Settlement) -> float:
         """The load factor at which the structure buckles, by linear buckling or on its way in exact geometry."""

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.collapse_steps import collapse_steps
 from pinjoint.components import written
 from pinjoint.components.bent import is_frame
 from pinjoint.components.field import Vector
@@ -16,6 +17,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bearing
 from pinjoint.components.units import units_on_screen
 from pinjoint.components.view import Listing
+from pinjoint.documents.statics import PLASTIC
 from pinjoint.results import Results, envelope_of_reactions, envelope_of_rods
 from pinjoint.systems.input.actions import LIVE, PROPERTIES, TABLE
 from pinjoint.systems.render.ui.listing import height_of, rows_in
@@ -62,9 +64,19 @@ class Lister:
             if envelope is not None:
                 of_reactions = envelope_of_reactions(model, envelope)
                 self._tables = {"envelope": envelope_of_rods(model, envelope), "reactions": of_reactions}
+            elif model.solution is not None and model.first_order and (steps := self._steps()) is not None:
+                self._tables["steps"] = steps
             said = language(), units_on_screen(), id(envelope)
             self._of = (model.context, model.revision, known, *said)  # finding them may compute forces
         return self._tables
+
+    def _steps(self) -> Table | None:
+        """The way to collapse of what is shown, if that is beyond the elastic range."""
+        settlement = self._context.document.statics.settlement
+        if settlement is None or PLASTIC.isdisjoint(event.kind for event in settlement.events):
+            return None
+        with self._context.model.own_state():
+            return collapse_steps(self._context.model)
 
     @property
     def table(self) -> Table:
@@ -125,13 +137,16 @@ class Lister:
             "sums": tr("Sums"),
             "envelope": tr("Envelope"),
             "reactions": tr("Reactions"),
+            "steps": tr("Hinge by hinge"),
         }
         return titles[name]
 
     @property
     def _elements(self) -> str:
         """The table of the model whose elements the rows are; "" if they are none's."""
-        return {"sums": "", "envelope": "rods", "reactions": "particles"}.get(self.shown, self.shown)
+        return {"sums": "", "steps": "", "envelope": "rods", "reactions": "particles"}.get(
+            self.shown, self.shown
+        )
 
     def follow(self) -> None:
         """Show the rows of elements that were selected elsewhere."""

@@ -238,6 +238,9 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
             tr("exact theory"),
             tr("{status} at {share} of the load", status=tr(settlement.status), share=share),
         )
+    if (limit := context.document.statics.limit_load) is not None:
+        told = tr("collapse at load × {factor}", factor=written.number(limit.factor))
+        yield tr("limit analysis"), told if limit.motion is not None else tr(limit.status)
     for event in settlement.events:
         if event.kind in JUMPS:
             yield (tr(event.kind), tr("at {share} of the load", share=written.share(event.load_factor)))

@@ -80,6 +80,10 @@ def show(context: Context, elapsed: float) -> None:
         ]
         if lasting[1]:
             offer = tr(NAMES[EXACT if statics.first_order else FIRST_ORDER]), "next theory"
+        if context.gesture is None and not unfinished:
+            collapse, divides = statics.collapse(rested)
+            lasting.append(collapse)
+            offer = (tr("divide there"), "divide at hinges") if divides else offer
     else:
         remarks = [remark.message for remark in context.document.assessment.remarks]
         lasting = [*remarks, "" if follows(context) else _gone(context)]

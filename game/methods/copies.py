@@ -20,7 +20,13 @@ from pinjoint.systems.statics.unknowns import Unknown
 _ACTING = {  # what loads, moves or strains a structure, by table
     "environment": ("force", "acceleration"),
     "particles": ("force", "moment", "acceleration", "displacement", "rotation"),
-    "rods": ("distributed_force", "plastic_strain", "temperature_change", "temperature_gradient"),
+    "rods": (
+        "distributed_force",
+        "plastic_strain",
+        "plastic_rotation",
+        "temperature_change",
+        "temperature_gradient",
+    ),
 }
 _STIFF = 1e9  # times the bending stiffness, so that what is drawn stays straight
 

@@ -700,11 +700,13 @@ class Structure:
         noise = 4.0 * ROUND_OFF * (own * size + np.abs(moment))
         noise += UNBALANCED * self.largest_force(found) * self.rest_length[:, None]
         untied = self.untied(flowing, np.abs(turned))
+        tied = flowing & ~untied
+        gained = np.where(tied & (own * np.abs(turned) <= noise), 0.0, turned)
         return replace(
             found,
-            tied=np.column_stack([none[:, 0], flowing & ~untied]),
+            tied=np.column_stack([none[:, 0], tied]),
             elastic_force=np.column_stack([found.elastic_force, moment + own * turned]),
-            plastic_strain=np.column_stack([found.plastic_strain, permanent + turned]),
+            plastic_strain=np.column_stack([found.plastic_strain, permanent + gained]),
             flowing=np.column_stack([found.flowing, untied]),
             slack=np.column_stack([found.slack, none]),
             round_off=np.column_stack([found.round_off, noise]),

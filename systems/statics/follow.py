@@ -424,6 +424,8 @@ class Path:
         fine = self._went_along(point.response, tangent, reached[1], predicted, change)
         switched = not np.array_equal(found.response.soft, tangent.soft)
         coarse = not self.exact_events and switched and abs(dt) <= RESOLUTION
+        if structure.ends_yield and abs(dt) <= TIED:  # to the end of a piece that counts as reached
+            coarse = True
         return reached if fine or coarse else HALF
 
     def _found(

@@ -25,7 +25,7 @@ import numpy as np
 
 from pinjoint.components.cases import settled
 from pinjoint.components.derived import on_axis
-from pinjoint.components.language import tr
+from pinjoint.components.language import begun, tr
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.particle import in_support_axes, spring_stiffness, supported
@@ -33,7 +33,7 @@ from pinjoint.components.spans import Kinks
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
-from pinjoint.systems.statics.explain import describe_motion
+from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.superposition import ROUNDING, SetState, Superposition
 from pinjoint.systems.statics.theory import FirstOrder
@@ -246,6 +246,13 @@ def real_structure(model: Model) -> tuple[Released, SetState]:
     """The structure as it is, and its state under the load. Raises MethodError."""
     if problem := incomputable(model):
         raise MethodError(problem)
+    if len(rows := np.flatnonzero(model.rods.plastic_rotation.any(axis=1))):
+        message = tr(
+            "{rods} turned in plastic hinges, and these methods know elastic members only. Begin from the undeformed"
+            " structure, or set plastic rotations to 0.",
+            rods=begun(rod_names(model, rows)),
+        )
+        raise MethodError(message)
     try:
         return (whole := Released(model, ())), whole.under_load()
     except NoEquilibrium as reason:

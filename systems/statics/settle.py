@@ -18,12 +18,13 @@ from functools import cached_property
 
 import numpy as np
 
+from pinjoint.components import written
 from pinjoint.components.field import LARGEST, FieldError
-from pinjoint.components.language import joined, marked, plural, tr
+from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
-from pinjoint.components.rod import extensible_elsewhere
+from pinjoint.components.rod import beside_thrust, extensible_elsewhere
 from pinjoint.components.theory import EXACT
 from pinjoint.components.wording import quoted
 from pinjoint.systems.statics.bending import needed_parts
@@ -54,6 +55,7 @@ UNBALANCED = 1e-6  # of the largest force: a larger unbalanced force is no equil
 UNCHANGED = 1e-12  # of the load: a smaller change is round-off
 MOST_DISCS = 250  # without rods; more would take minutes
 IN_ONE_PLACE = 0.75  # of the sum of their radii: forces hardly part discs that overlap by more
+THRUST = 0.15  # of the axial strength, above which a plastic moment is less
 HELD = 1e-3  # of the forces that hold a state: a smaller difference from a scaled load counts as none
 
 
@@ -179,7 +181,7 @@ class _Settling:
         elsewhere = extensible_elsewhere(model) if theory == EXACT else ""
         notes = [*self.external.notes, *([elsewhere] if elsewhere else [])]
         self.events = [Event("note", 0.0, note) for note in notes]
-        self.looked_for_bodies = self.soft = False
+        self.looked_for_bodies = self.soft = self.thrust_noted = False
         self.slender = np.zeros(model.rods.count, dtype=bool)
         self.begun = permanent = self.structure.yielding_parts(start.permanent)
         at_rest = Path(self.structure, self._nothing, self._nothing)
@@ -290,6 +292,7 @@ class _Settling:
             status = self._stability(factor)
             self._check_balance(factor)
             self._note_slender(factor)
+            self._note_thrust(factor)
         except NoEquilibrium as end:
             status, message = end.status, str(end)
             if end.motion is not None:
@@ -418,6 +421,27 @@ class _Settling:
         if len(rows):
             self.slender[rows] = True
             self.events.append(Event("note", factor, divide_named(self.model, rows, parts)))
+
+    def _note_thrust(self, factor: float) -> None:
+        """Report, once, the axial forces beside which plastic moments are less than those that hinges heed."""
+        rods, structure = slice(self.model.rods.count), self.structure
+        if self.thrust_noted or not structure.ends_yield:
+            return
+        response = self.point.response
+        force, hinges = response.axial_force[rods], structure.at_limit(response)[rods, 1:].any(axis=1)
+        share = np.maximum(force / structure.tension_limit[rods], -force / structure.compression_limit[rods])
+        over = np.flatnonzero((share > THRUST) & hinges)
+        if len(over):
+            self.thrust_noted = True
+            most = over[share[over].argmax()]
+            message = tr(
+                "{rod} bears {share} of its strength by its axial force, which lowers its plastic moment to about {left};"
+                " plastic hinges do not heed that. Compare M_p reduced by N in the table of results.",
+                rod=begun(rod_names(self.model, np.array([most]))),
+                share=written.share(share[most]),
+                left=written.share(float(beside_thrust(share[most]))),
+            )
+            self.events.append(Event("note", factor, message, (self.model.rods.names[most],)))
 
     def _check_bodies(self, target: Array, factor: float) -> None:
         """Report bodies that nothing holds along an axis. Raises NoEquilibrium if one is pulled along it."""

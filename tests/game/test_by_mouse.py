@@ -299,8 +299,10 @@ def test_the_second_click_on_a_picture_is_not_meant_for_the_model_that_it_opened
     session.press("d")
     scene = session.scenes.active
     assert isinstance(scene, FormScene)
-    tiles = [place for place in scene.layout(session).places if place.top > 100]
-    pixel = tiles[0].left + 10.0, tiles[0].top + 10.0
+    tile = next(tile for tile in scene.form.tiles if tile.file == "isostatic")
+    place = scene.layout(session).place_of(tile)
+    assert place is not None
+    pixel = place.left + 10.0, place.top + 10.0
     session.press("click", pixel)
     assert session.scene == "pause"
     session.press("double click", pixel)

@@ -10,8 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pinjoint import Session
+from pinjoint.components.form import Box
 from pinjoint.components.language import spoken
 from pinjoint.components.model import Model
+from pinjoint.editor.scenes.form import FormScene
 from pinjoint.lessons import progress
 from pinjoint.lessons.checking import check_lesson
 from pinjoint.lessons.course import Course, take_up_lesson
@@ -529,6 +531,18 @@ def test_a_number_without_a_unit_is_asked_for_as_such(session: Session) -> None:
     session.type("61.7 kN")
     session.press("return")
     assert course.said == "Type a number without a unit. Asked: The lowest buckling load factor."
+
+
+def test_the_box_that_a_lesson_speaks_of_is_in_sight_at_once(session: Session) -> None:
+    session.resize(1000, 720)
+    begun(session, "06_statically_indeterminate", 2)
+    session.resize(*session.extent)
+    session.select(session.rods["AC"])
+    session.press("return")
+    scene = session.scenes.active
+    assert isinstance(scene, FormScene)
+    titles = [place.item.title for place in scene.layout(session).places if isinstance(place.item, Box)]
+    assert "stiffness" in titles
 
 
 def test_what_was_typed_counts_while_the_tool_goes_on(session: Session) -> None:

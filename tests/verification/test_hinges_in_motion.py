@@ -216,9 +216,13 @@ def test_a_shaken_portal_keeps_residual_moments_of_least_energy_and_the_account_
 
 def test_hinges_are_told_with_their_instants_and_saved(tmp_path: Path) -> None:
     session = Session.open(portal())
-    session.run(time=0.5)
-    told = [one for one in session.document.chronicle.happenings if one.kind == "hinge"]
-    assert [one.elements[0] for one in told][:1] == ["D"]
+    session.run(time=0.7)
+    happenings = session.document.chronicle.happenings
+    told = [one for one in happenings if one.kind == "hinge"]
+    assert [one.elements for one in told] == [("D",), ("E",), ("C",), ("A",)], "each particle once"
+    [collapse] = [one for one in happenings if one.kind != "hinge"]
+    assert (collapse.kind, collapse.elements) == ("collapse", ("A", "C", "D", "E"))
+    assert collapse.time == told[-1].time, "the last hinge makes the mechanism"
     assert told[0].message.startswith("A plastic hinge forms at D")
     assert told[0].load_factor == pytest.approx(told[0].time / 0.5)
     path, found = tmp_path / "portal.json", tmp_path / "found.json"

@@ -7,7 +7,7 @@ from functools import partial
 from operator import attrgetter
 
 from pinjoint.components.field import Vector
-from pinjoint.components.language import begun, marked, tr
+from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import HUBS
@@ -15,7 +15,7 @@ from pinjoint.components.tags import Selected
 from pinjoint.editor.context import Context, tell
 from pinjoint.editor.scenes.methods import ForceMethod
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.edit.dividing import DIVISIONS, divide, divide_at
+from pinjoint.systems.edit.dividing import DIVISIONS, divide, divide_at, several
 from pinjoint.systems.edit.picking import pick_rod
 from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import share_at, weigh_along
@@ -125,6 +125,26 @@ def _split(context: Context, pixel: Vector) -> None:
     parts = divide_at(context.model, rod, [round(share_at(rod, point), 6)])
     context.select(parts[0].ends[1])
     context.notice = tr("{rod}: divided at {particle}", rod=name, particle=parts[0].ends[1].name)
+
+
+@offer("divide at hinges", "", "divide members where hinges form between their ends")
+def _divide_at_hinges(context: Context, pixel: Vector) -> None:
+    """Divide members where limit analysis has plastic hinges between their ends, so that load steps find them, too."""
+    model, limit = context.model, context.document.statics.limit_load
+    if limit is None or not limit.between:
+        raise Refusal("No plastic hinge forms between the ends of a member.")
+    places: dict[int, list[float]] = {}
+    for section, _ in limit.between:
+        places.setdefault(section.row, []).append(section.share)
+    rods = {model.rods[row]: sorted(shares) for row, shares in places.items()}
+    with model.transaction(tr("divide {rods}", rods=several(model, [*rods]))):
+        parts = [part for rod, shares in rods.items() for part in divide_at(model, rod, shares)]
+    added = len(parts) - len(rods)
+    context.notice = plural(
+        "{count} particle added where a plastic hinge forms",
+        "{count} particles added where plastic hinges form",
+        added,
+    )
 
 
 @offer("weight along", "", "add its weight as a distributed load", enabled=attrgetter("model.rods.count"))
