@@ -215,10 +215,10 @@ def collapse_in_steps(made: Model, limit: LimitLoad) -> float:
     return next((event.load_factor for event in events if event.kind in kinds), math.inf)
 
 
-@pytest.mark.parametrize("start", range(0, 200, 50))
+@pytest.mark.parametrize("start", [0, 20, 100])
 def test_load_steps_of_random_frames_collapse_there(start: int) -> None:
     """Half of them under loads between ends; members are divided where a hinge forms there, else steps go on further."""
-    for seed in range(start, start + 50):
+    for seed in range(start, start + 20):
         document = random_frame(seed, loaded=seed % 2 == 1)
         made, limit = models.load(document), found_of(document)
         places: dict[Rod, list[float]] = {}

@@ -194,3 +194,30 @@ def test_verify_checks_compression_members(capsys: pytest.CaptureFixture[str], t
     said = capsys.readouterr().out
     assert "Rod AB would buckle between its hinges" in said
     assert re.search(r"AB +185\.\d+ +123\.\d+ +1\.5\n", said)
+
+
+@pytest.mark.parametrize("share", [0.25, 0.5, 0.8])
+def test_a_pull_sideways_feels_the_softening(share: float) -> None:
+    """A column of eight rods between hinges under P: its stiffness in the middle is u³/3(tan u − u), u = π/2 √(P/P_E), of
+    that without P [Timoshenko, Gere, section 1.3]: 1 − P/P_E, but for 2 %."""
+    sides = []
+    for push in (0.0, share * EULER):
+        particles = [particle(f"n{k}", 0, k * LENGTH / 8) for k in range(9)]
+        particles[0] |= HELD
+        particles[4]["force"] = [1e-4, 0.0]
+        particles[8] |= {"fixed": [True, False], "force": [0.0, -push]}
+        rods = [rod(f"n{k}", f"n{k + 1}", stiffness=1e7, bending_stiffness=EI) for k in range(8)]
+        state = settle(models.load(model(particles, rods))).final
+        sides.append(state.displacement[4, 0])
+    u = 0.5 * math.pi * math.sqrt(share)
+    assert sides[0] / sides[1] == pytest.approx(u**3 / (3.0 * (math.tan(u) - u)), rel=1e-3)
+    assert sides[0] / sides[1] == pytest.approx(1.0 - share, rel=2e-2)
+
+
+def test_one_slider_loads_all_of_eulers_columns() -> None:
+    session = Session.open("eulers_columns")
+    (slider,) = session.model.sliders
+    assert [(aim.table, aim.element, aim.field, aim.axis) for aim in slider.aims] == [
+        ("loads", None, "force", "y")
+    ]
+    assert {load.on for load in session.model.loads} == {session.particles[f"{name}8"].row for name in "ABCD"}
