@@ -160,7 +160,9 @@ def factor_of_each(world: World, table: str) -> NDArray[np.float64]:
 
 def unknown_case(world: World) -> str:
     """The sentence about a case of the chosen combination that no load is of; "" if there is none."""
-    known, chosen = cases(world), factors(world) or {}
+    if (chosen := factors(world)) is None:
+        return ""
+    known = cases(world)
     for case in [case for case in chosen if case not in known][:1]:
         return tr(
             "The combination '{name}' names the case '{case}', which no load is of; there are {known}.",
@@ -197,6 +199,8 @@ def _settlements(world: World) -> NDArray[np.float64]:
 def idle_settlement(world: World, *, moving: bool) -> str:
     """The sentence about a settlement that moves no rigid support, or none while time passes; "" if there is none."""
     given, loads, particles = _settlements(world) != 0.0, world.tables["loads"], world.tables["particles"]
+    if not given.any():
+        return ""
     for row in np.flatnonzero(given.any(axis=1))[:1].tolist() if moving else ():
         load = world.describe(loads[row])
         return tr("Settlements act in statics only: while time passes, {load} moves no support.", load=load)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pinjoint.components.cases import Acting
+from pinjoint.components.cases import Acting, factors
 from pinjoint.components.field import Column
 from pinjoint.components.load import DIRECTIONS
 from pinjoint.components.world import World
@@ -104,10 +104,11 @@ class Kinks(NamedTuple):
 
         acting: combinations, of which the rods follow one another.
         """
-        found, acting = cls._of_all(world, share), acting or Acting.of(world)
-        by = np.column_stack([acting.span_loads, acting.permanent])[:, found.load]
-        if len(by) == 1 and (by == 1.0).all():
+        found = cls._of_all(world, share)
+        if acting is None and factors(world) is None:
             return found
+        acting = acting or Acting.of(world)
+        by = np.column_stack([acting.span_loads, acting.permanent])[:, found.load]
         combination, kink = np.nonzero(by)
         row, place, order, size, load = (column[kink] for column in found)
         row = combination * world.tables["rods"].count + row
