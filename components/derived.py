@@ -13,7 +13,7 @@ from pinjoint.components.cases import SOURCES, Acting
 from pinjoint.components.field import Column, Field
 from pinjoint.components.load import SpanLoad, varying
 from pinjoint.components.particle import DEFAULT_MASS
-from pinjoint.components.rod import AT_STRENGTH, DEFAULT_STIFFNESS, euler_load
+from pinjoint.components.rod import AT_STRENGTH, DEFAULT_STIFFNESS, euler_load, plastic_moments
 from pinjoint.components.section import Section
 from pinjoint.components.spans import Curves, Kinks
 from pinjoint.components.table import Table
@@ -279,12 +279,15 @@ def limits(world: World) -> None:
     limit[rods.tension_only | (rods.buckling_load < limit)] = np.inf
 
 
-@derives("rods", "moment_limit", "plastic_moment fixity")
+_OF_MOMENTS = "plastic_moment fixity section material bending_stiffness settings.plastic_hinges"
+
+
+@derives("rods", "moment_limit", _OF_MOMENTS)
 def moment_limits(world: World) -> None:
     """Plastic moments of the ends that moments reach, with "unlimited" as infinity."""
     rods = world.tables["rods"]
-    limited = (rods.fixity > 0.0) & ~np.isnan(rods.plastic_moment)[:, None]
-    world.writable("rods.moment_limit")[...] = np.where(limited, rods.plastic_moment[:, None], np.inf)
+    limit = np.where(rods.fixity > 0.0, plastic_moments(world)[:, None], np.inf)
+    world.writable("rods.moment_limit")[...] = limit
 
 
 @derives("rods", "hinge_yielding", "end_moment moment_limit settings.plasticity")

@@ -33,6 +33,7 @@ from pinjoint.components.section import (
     check_material,
     check_section,
     given_by,
+    plastic_moment,
 )
 from pinjoint.components.table import Table, flags
 from pinjoint.components.world import World
@@ -41,7 +42,7 @@ AT_STRENGTH = 1.0 - 1e-9  # share of its strength from which on a rod is said to
 DEFAULT_STIFFNESS = 164640.0  # kN, of a rod of which no other is known
 _NAMED_BY = {"area": "section", "second_moment": "section", "youngs_modulus": "material"}
 _NUMBERS_OF_NAMES = {*_NAMED_BY, "material"}
-_OF_HINGES = {"plastic_moment", "prescribed_bending_stiffness", "section", *_NAMED_BY}
+_OF_HINGES = {"plastic_moment", "prescribed_bending_stiffness", *_NAMED_BY}
 
 
 class Rod(Handle):
@@ -116,7 +117,9 @@ class Rod(Handle):
         doc="Compression at which it yields; 0: unlimited.",
     )
     plastic_moment: Field[float | None] = if_known(
-        "kN·m", absent="unlimited", doc="Bending moment at which its ends yield, as plastic hinges."
+        "kN·m",
+        absent="unlimited",
+        doc="Bending moment at which its ends yield, as plastic hinges; unlimited ones may be those of sections (settings).",
     )
     damping: Field[float] = Field(
         "kN·s/m",
@@ -409,9 +412,9 @@ def _contradictions(rod: Rod, changed: Collection[str]) -> list[tuple[str, str]]
 
 
 def _check_plastic_moment(table: Table[Any], rows: NDArray[np.intp]) -> None:
-    """Only what bends has a plastic moment; that of a section waits until its rod does."""
+    """Only what bends has a plastic moment."""
     idle = (table.bending_stiffness[rows] == 0.0) & ~np.isnan(table.plastic_moment[rows])
-    for row in rows[idle & (table.section[rows] == None)][:1].tolist():  # noqa: E711 (of each row)
+    for row in rows[idle][:1].tolist():
         raise FieldError(
             "{rod}: it does not bend, so that it has no plastic moment ({moment:g} kN·m); give it a bending stiffness"
             " above 0, or remove the plastic moment.",
@@ -573,8 +576,20 @@ def can_yield(world: World) -> bool:
 
 def can_collapse(world: World) -> bool:
     """True if some force or moment in rods has a limit, so that limit analysis has an answer."""
-    limited = world.tables["settings"].plasticity[0] and not np.isnan(world.tables["rods"].plastic_moment).all()
+    limited = world.tables["settings"].plasticity[0] and np.isfinite(plastic_moments(world)).any()
     return bool(limited) or can_yield(world) or has_struts(world)
+
+
+def plastic_moments(world: World) -> NDArray[np.float64]:
+    """Those that rods are given, or, where settings say so, their sections have, infinite of others, (rods,)."""
+    rods = world.tables["rods"]
+    found: NDArray[np.float64] = np.where(np.isnan(rods.plastic_moment), np.inf, rods.plastic_moment)
+    if world.tables["settings"].plastic_hinges[0]:
+        names = list(zip(rods.section.tolist(), rods.material.tolist(), strict=True))
+        known = {pair: plastic_moment(*pair) for pair in set(names)}
+        of_sections = np.array([known[pair] for pair in names])
+        found = np.where(np.isinf(found) & (rods.bending_stiffness > 0.0), of_sections, found)
+    return found
 
 
 def can_hinge(world: World) -> bool:

@@ -195,8 +195,6 @@ def given_by(section: str | None = None, material: str | None = None) -> dict[st
         found |= {"youngs_modulus": substance.youngs_modulus, "thermal_expansion": substance.expansion}
         if profile is not None:
             found |= by_area(substance, profile.area)
-            ductile = substance.tension == substance.compression  # metals
-            found["plastic_moment"] = _tidy(substance.tension * profile.plastic_modulus) if ductile else None
     return found
 
 
@@ -211,3 +209,12 @@ def by_area(material: Material, area: float) -> dict[str, float]:
 
 def _tidy(value: float) -> float:
     return float(f"{value:.9g}")
+
+
+def plastic_moment(section: str | None, material: str | None) -> float:
+    """W_pl f_y of a section of a metal (kN·m), of the usual one if none is named; infinite of all else."""
+    profile = Section.named(section) if section is not None else None
+    substance = Material.named(USUAL_MATERIAL if material is None else material)
+    if profile is None or substance is None or substance.tension != substance.compression:
+        return math.inf
+    return _tidy(substance.tension * profile.plastic_modulus)

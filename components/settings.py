@@ -75,6 +75,11 @@ class Settings(Handle):
     plasticity: Field[bool] = Field(
         dtype=bool, default=True, doc="Rods with a strength or a plastic moment yield."
     )
+    plastic_hinges: Field[bool] = Field(
+        dtype=bool,
+        title="plastic hinges of sections",
+        doc="Rods form plastic hinges at the plastic moments of their sections, too; else only where one is given.",
+    )
     sleeping: Field[bool] = Field(
         dtype=bool,
         default=True,

@@ -71,7 +71,7 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
     ),
     marked("All rods"): (
         *(Settings.theory, Settings.opens_in, Settings.original_diagrams, Settings.diagrams),
-        *(Settings.diagram_scale, Settings.plasticity, Settings.sleeping),
+        *(Settings.diagram_scale, Settings.plasticity, Settings.plastic_hinges, Settings.sleeping),
     ),
 }
 _OF_BENDING = (  # what means nothing to rods that do not bend, and where none turns a particle

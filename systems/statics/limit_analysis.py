@@ -19,6 +19,7 @@ from pinjoint.components.bent import Parts
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.model import Model
+from pinjoint.components.rod import plastic_moments
 from pinjoint.components.spans import Curves, Kinks, extremes
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import Array, Structure, largest, normalised
@@ -172,7 +173,7 @@ class _Program:
         )
         self.force = max(largest(live), largest(dead)) or 1.0
         self.live, self.dead = live / self.force, dead / self.force
-        self.moment = np.where(np.isnan(rods.plastic_moment), np.inf, rods.plastic_moment)
+        self.moment = plastic_moments(model)
         if not model.settings.plasticity:
             self.moment[:] = np.inf
         self.unit = self.force * rods.rest_length  # of moments

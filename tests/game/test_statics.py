@@ -37,7 +37,7 @@ GERBER: dict[str, Any] = {  # 3 m + 2 m to the hinge, 3 m, q = 12 kN/m
         {"name": "C", "position": [8, 0], "fixed": [False, True]},
     ],
     "rods": [
-        {"name": name, "between": list(name), "section": "IPE 240", "distributed_force": [0, -12]}
+        {"name": name, "between": list(name), "section": "IPE 200", "distributed_force": [0, -12]}
         for name in ("AB", "BH", "HC")
     ],
 }
