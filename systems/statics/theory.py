@@ -174,10 +174,12 @@ class FirstOrder:
 def elastic(structure: Structure, displacement: Array, plastic_strain: Array, share: float) -> Response:
     """How rods respond of which none yields; what would is flowing."""
     found = structure.respond(displacement, plastic_strain, share)
-    if found.flowing.ndim > 1:
-        as_if = structure.unyielding.respond(displacement, plastic_strain, share)
-        return replace(as_if, flowing=found.flowing)
-    return replace(found, axial_force=found.elastic_force, plastic_strain=plastic_strain)
+    if found.flowing.ndim == 1:
+        return replace(found, axial_force=found.elastic_force, plastic_strain=plastic_strain)
+    if not (found.flowing | found.slack).any():
+        return found
+    as_if = structure.unyielding.respond(displacement, plastic_strain, share)
+    return replace(as_if, flowing=found.flowing)
 
 
 def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> StaticState:

@@ -13,7 +13,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 71_886,
+    "lines": 71_888,
     "files": 385,
     "names": 3_953,  # functions, classes and constants of modules
     "public names": 2_351,
