@@ -11,13 +11,16 @@ from itertools import count
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
+import numpy as np
 import pygame
 
 from pinjoint.app import SELDOM, App
 from pinjoint.components.field import Vector
+from pinjoint.components.load import SpanLoad
 from pinjoint.components.model import Model
 from pinjoint.documents import library
 from pinjoint.preparation import Preparation
+from pinjoint.systems.statics.envelope import States
 from tests.benchmarks.models import lattice, storeys
 
 FRAME = 1.0 / 60.0
@@ -301,6 +304,25 @@ def drags(*, quick: bool) -> Iterator[Row]:
             }
 
 
+def cases(*, quick: bool) -> Iterator[Row]:
+    """Milliseconds of the processor for N, V, M and reactions in so many load cases of a frame, after the first time."""
+    model, lot, count = storeys(12, 19), np.random.default_rng(1), 10 if quick else 50
+    for case in range(count):
+        rows = lot.choice(model.rods.count, 20, replace=False)
+        model.create(SpanLoad, 20, rod=rows, case=f"c{case}", start_intensity=(0.0, -4.0), force=(0.0, -5.0))
+    chosen = {f"c{case}": {f"c{case}": 1.0} for case in range(count)}
+    taken = []
+    for _ in range(5):
+        started = time.process_time()
+        States.superposed(model, chosen, 1.0)
+        taken.append(1e3 * (time.process_time() - started))
+    yield {"rods": model.rods.count, "cases": count, "first_ms": taken[0], "least_ms": min(taken)}
+
+
 def report(*, quick: bool) -> dict[str, list[Row]]:
     """Everything this benchmark measures, by table."""
-    return {"reactions": list(reactions(quick=quick)), "drags": list(drags(quick=quick))}
+    return {
+        "reactions": list(reactions(quick=quick)),
+        "drags": list(drags(quick=quick)),
+        "cases": list(cases(quick=quick)),
+    }

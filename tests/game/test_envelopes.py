@@ -3,7 +3,6 @@
 import csv
 import io
 import json
-import time
 
 import numpy as np
 import pytest
@@ -127,7 +126,7 @@ def test_motion_has_the_loads_of_the_combination() -> None:
 
 
 def test_fifty_combinations_of_a_frame_at_once() -> None:
-    """19 storeys of 12 bays: N, V, M of all members and all reactions; 0.13 s of a core."""
+    """19 storeys of 12 bays: N, V, M of all members and all reactions; `bench editing` times as many."""
     storeys, bays = 19, 12
     clamp = {"fixed": [True, True], "fixed_rotation": True}
     particles = [
@@ -148,10 +147,7 @@ def test_fifty_combinations_of_a_frame_at_once() -> None:
     made["settings"] = {"theory": "first-order"}
     session = Session.open(made)
     chosen = {f"c{case}": {f"c{case}": 1.0} for case in range(50)}
-    States.superposed(session.model, chosen, 1.0)
-    began = time.process_time()
     found, true = States.superposed(session.model, chosen, 1.0)
-    assert time.process_time() - began < 0.4  # of machines that are busy
     assert true.all()
     single = session.statics(case="c7").final
     assert found.reaction[7, :, :2] == pytest.approx(single.reaction, abs=1e-9)
