@@ -1,6 +1,7 @@
 """Every value stands nearer to its own rod or arrow than to any other, in every bundled model and window."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -14,7 +15,7 @@ from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.written import DIGITS, given, number
 from pinjoint.documents import models
 from pinjoint.systems.render.labels.placing import LEADER_OPACITY, half_size
-from pinjoint.systems.render.marks import Panel, Picture, Points, Strokes, Text
+from pinjoint.systems.render.marks import Owner, Panel, Picture, Points, Strokes, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import faded, load_theme
 from tests.reference.boxes import Box, text_box
@@ -62,10 +63,10 @@ def misplaced(picture: Picture, model: Model) -> Iterator[str]:
     In its own diagram a value may be nearer to an arrow than to its rod, but not nearer to another rod. What stands away
     from all that is led to its own by a line.
     """
-    parts = parts_of(picture, LIGHT)
+    parts = Parts(replace(part, owner=_member(part.owner, model)) for part in parts_of(picture, LIGHT))
     for text in values(picture, model):
-        table, row = text.of  # type: ignore[misc]
-        box, own = text_box(text, text.size), [part for part in parts if part.owner == text.of]
+        whose = table, row = _member(text.of, model)  # type: ignore[arg-type]
+        box, own = text_box(text, text.size), [part for part in parts if part.owner == whose]
         line = leader(text, picture)
         if text.text.endswith("kN·m") and table == "particles":
             own = _arc(text, own)
@@ -77,15 +78,21 @@ def misplaced(picture: Picture, model: Model) -> Iterator[str]:
                 yield f"{text.text} of {model.tables[table].names[row]} stands at another arrow"
         if line is not None:
             # Curves are drawn flat within so many pixels of where they are.
-            yield from _astray(text, line, own, parts, FLAT if bends(model) else 0.1)
+            yield from _astray(text, whose, line, own, parts, FLAT if bends(model) else 0.1)
             continue
         to_any = min(distance(box, part) for part in own)
         to_line = min((distance(box, part) for part in own if part.kind == "line"), default=to_any)
         for part, away in near(box, parts, to_line):
-            kin = part.owner == text.of and (table == "rods" or part.kind in ("disc", "support") or part in own)
+            kin = part.owner == whose and (table == "rods" or part.kind in ("disc", "support") or part in own)
             if not kin and away <= (to_line if part.kind == "line" else to_any):
-                its, other = (model.tables[name].names[index] for name, index in (text.of, part.owner))
+                its, other = (model.tables[name].names[index] for name, index in (whose, part.owner))
                 yield f"{text.text} of {its}: {to_any:.1f} pixels from it, {away:.1f} from the {part.kind} of {other}"
+
+
+def _member(owner: Owner, model: Model) -> Owner:
+    """Of what acts between the ends of a member the member, whose own distributed force is drawn alike; else the same."""
+    table, row = owner
+    return ("rods", int(model.span_loads.rod[row])) if table == "span_loads" else owner
 
 
 def leader(text: Text, picture: Picture) -> Points | None:
@@ -100,7 +107,9 @@ def leader(text: Text, picture: Picture) -> Points | None:
     return None
 
 
-def _astray(text: Text, line: Points, own: list[Part], parts: Parts, within: float) -> Iterator[str]:
+def _astray(
+    text: Text, whose: Owner, line: Points, own: list[Part], parts: Parts, within: float
+) -> Iterator[str]:
     """What is wrong with a value that stands away: on something, or its line leads elsewhere, or across others."""
     end = (*line[1], *line[1])
     if min(distance(end, part) for part in own) > within:

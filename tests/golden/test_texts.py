@@ -158,10 +158,11 @@ def known() -> set[str]:
 
 
 def known_words() -> set[str]:
-    """Words that are nobody's language: names of elements, units, keys, and what scenes type."""
+    """Words that are nobody's language: names of elements and combinations, units, keys, and what scenes type."""
     models = [Session.open(name.removeprefix("model ")).model for name in MODELS]
     tables = [table for model in models for table in model.tables.values() if not table.kind.single]
     names = [name for table in tables for name in table.names]
+    names += [name for model in models for name in model.settings.combinations]
     words = {word for name in [*names, *bundled()] for word in re.findall("[A-Za-z]+", name)}
     return words | _UNITS | _PROPER | _KEYS | {"Esc", "Ctrl", "Shift"} | _GIVEN
 

@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, Axes, inner_forces
+from pinjoint.components.bent import AXIAL, FLAT, MOMENT, SHEAR, Axes, inner_forces
 from pinjoint.components.language import marked, tr
 from pinjoint.components.load import varying
 from pinjoint.components.model import Model
@@ -244,7 +244,9 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) 
     scale = min(scale, _FAR / largest)
     base, curves, side = baseline(sheet, rows), every.some(rows), side[rows]
     most = np.clip(_PIECES // len(rows), 4, 24)  # more where rods are few and long
-    shares = np.linspace(0.0, 1.0, int(np.clip(sheet.rod_length / (_PIECE * sheet.unit), 8, most)) + 1)
+    tall = math.sqrt(scale * largest / FLAT)  # so many chords of a parabola so high are that flat
+    pieces = int(np.clip(max(sheet.rod_length / (_PIECE * sheet.unit), tall), 8, most))
+    shares = np.linspace(0.0, 1.0, pieces + 1)
     shares = curves.with_kinks(shares)
     points, normals = stations(base, shares, side)
     heights = scale * curves.at(shares)
