@@ -93,7 +93,9 @@ def test_a_particle_has_the_boxes_that_the_thesis_names(session: Session) -> Non
 def test_nothing_selected_is_the_environment_and_all_settings(session: Session) -> None:
     scene = open_of(session)
     assert scene.form.heading == "Environment"
-    assert {box.section for box in scene.form.boxes} == {"Environment", "All particles", "All rods"}
+    assert {box.section for box in scene.form.boxes} == {
+        *("Environment", "All particles", "Load combinations", "All rods"),
+    }
     assert {"force x", "acceleration y", "drag", "integrator", "force diagram scale"} <= session.boxes.keys()
 
 
@@ -102,7 +104,7 @@ def test_nothing_selected_is_the_environment_and_all_settings(session: Session) 
     [
         (("B",), ["particle B", "Supports and joints", "Loads", "Motion and contact", "All particles"]),
         (("AB",), ["rod AB", "Section and material", "Loads", "Motion and contact", "All rods"]),
-        ((), ["Environment", "All particles", "All rods"]),
+        ((), ["Environment", "All particles", "Load combinations", "All rods"]),
     ],
 )
 def test_boxes_stand_in_groups_in_the_order_of_the_work(
