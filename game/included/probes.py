@@ -236,8 +236,12 @@ def plot_curve(session: Context, pixel: Vector) -> None:
             "This takes long for more than {count} rods; use the command: pinjoint curve", count=MOST_RODS
         )
     held = {f"{one.name}.{axis}" for one in model.particles for at, axis in enumerate("xy") if one.fixed[at]}
-    goal = Goal.of(model, model.settings.load_steps[-1], None)
-    curve = Curve.of(model, goal, theory=EXACT if model.solution is None else model.settings.theory)
+    try:
+        goal = Goal.of(model, model.settings.load_steps[-1], None)
+        curve = Curve.of(model, goal, theory=EXACT if model.solution is None else model.settings.theory)
+    except ValueError as error:  # such as a model without loads
+        session.notice = str(error)
+        return
     drawn = plot(model, curve, [name for name in names if name not in held])
     shown = probes.curve is not None and probes.curve[1].x_title == drawn.x_title
     probes.model = weakref.ref(model)

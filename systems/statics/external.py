@@ -41,9 +41,9 @@ class External:
         acting: combinations, of which the particles follow one another.
         """
         particles, environment = model.particles, model.environment
-        loads, borne, acting = model.loads, borne_between(model, acting), acting or Acting.of(model)
+        loads, acting = model.loads, acting or Acting.of(model)
         share = acting.permanent[:, None, None]
-        borne = borne.reshape(len(share), -1, 2)
+        borne = borne_between(model, acting).reshape(len(share), -1, 2)  # whole, whatever the model shows
         scaled = share * (particles.force + np.array(environment.force)) + borne
         by_history = np.array([static_factor(history) for history in loads.history], dtype=np.float64)
         factor = by_history * acting.loads

@@ -35,6 +35,7 @@ CABLES = EVERYTHING | {"rods": [rod | {"tension_only": True} for rod in EVERYTHI
 FRAME = EVERYTHING | {
     "rods": [rod | {"bending_stiffness": 50.0, "temperature_gradient": 5.0} for rod in EVERYTHING["rods"]]
 }
+HINGES = FRAME | {"rods": [rod | {"plastic_moment": 1.0} for rod in FRAME["rods"]]}
 STRUTS = EVERYTHING | {
     "rods": [
         rod | {"buckles": True, "hinged": [True, True], "bending_stiffness": 1.0} for rod in EVERYTHING["rods"]
@@ -54,6 +55,7 @@ def test_our_step_systems_pass(name: str) -> None:
         "physics.slackness": CABLES,
         "physics.buckling": STRUTS,
         "physics.axial_damping_of_cables": CABLES,
+        **dict.fromkeys(("plasticity.hinges", "plasticity.turning", "plasticity.first_hinges"), HINGES),
         **dict.fromkeys(("physics.bending", "physics.bending_damping", "physics.turning_drag"), FRAME),
     }
     assert check_system(partial(again, OURS[name]), [others.get(name, EVERYTHING)]).needed == 1

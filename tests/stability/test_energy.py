@@ -95,9 +95,10 @@ def test_damped_models_well_below_the_stable_step_rest_without_a_warning(
 @pytest.mark.parametrize("name", models.bundled())
 def test_bundled_models_need_no_warning(name: str) -> None:
     session = Session.open(name)
+    told = "Settlements act in statics only" if name == "load_cases" else ""
     for steps in (1, 1, 30, 500):
         session.run(steps=steps)
-        assert session.simulation.warning == ""
+        assert session.simulation.warning.partition(":")[0] == told
 
 
 # --- rest ------------------------------------------------------------------------------------------------
