@@ -96,7 +96,11 @@ def test_random_frames_against_a_fine_mesh(number: int) -> None:
         rod |= {} if number % 2 else {"hinged": [False, False], "end_springs": [0.0, 0.0]}
     found = Vibrations.of(parse(document)).angular_squared
     if number % 2 == 0:
-        assert found == pytest.approx(frame_theory.natural_frequencies(document, 4)[: len(found)], rel=1e-7)
+        all_found = frame_theory.natural_frequencies(document, 4)
+        rounding = (
+            np.finfo(float).eps * all_found[-1]
+        )  # of a dense eigenvalue problem, which depends on the machine
+        assert found == pytest.approx(all_found[: len(found)], rel=1e-7, abs=rounding)
     fine = frame_theory.natural_frequencies(document, 16)[: len(found)]
     assert found[0] == pytest.approx(fine[0], rel=4e-3)
     assert found == pytest.approx(fine, rel=0.045)
