@@ -53,6 +53,16 @@ class Solution(Protocol):
     def share(self) -> float: ...
 
 
+@dataclass(frozen=True)
+class Shown:
+    """A solution that was found already, or a state on the way to one; see Solution."""
+
+    columns: Mapping[str, Column]
+    revision: int
+    first_order: bool
+    share: float
+
+
 class World:
     """A model: tables of entities. Documents change by `execute`; state by columns that `writable` grants.
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -25,6 +24,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import can_collapse, nodes
 from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.components.view import Shape
+from pinjoint.components.world import Shown
 from pinjoint.documents.shapes import last_motion
 from pinjoint.systems.statics.behind import Behind
 
@@ -46,16 +46,6 @@ PART, _MOST, _SHARE = 0.03, 0.25, 0.5
 SMALL = 200  # rods, up to which first order is found within the frame
 _CHOICES = "theory", "load_steps"  # of the settings
 _MOVED = "displacement", "rotation"  # of constrained directions: settled supports
-
-
-@dataclass(frozen=True)
-class Step:
-    """What the model shows of a state on the way to its solution."""
-
-    columns: Mapping[str, Column]
-    share: float
-    first_order: bool
-    revision: int
 
 
 class Statics:
@@ -350,7 +340,7 @@ class Statics:
                 if state.balanced:
                     with model.own_state():
                         columns = self._shown(state)
-                    model.show(Step(columns, state.load_factor, self.first_order, model.next_revision()))
+                    model.show(Shown(columns, model.next_revision(), self.first_order, state.load_factor))
                     yield state.load_factor
         finally:
             model.show(outer)

@@ -17,13 +17,14 @@ import numpy as np
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, forces_along, inner_forces
 from pinjoint.components.cases import Acting, choose, settled
 from pinjoint.components.derived import initial_slopes, moments_along, on_joints, unforced
-from pinjoint.components.field import Column, FieldError
+from pinjoint.components.field import FieldError
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.spans import Curves, Kinks, extremes
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.wording import missing
+from pinjoint.components.world import Shown
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest, of_rods
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.external import External
@@ -86,7 +87,7 @@ class States(NamedTuple):
         """The one of what acts in a model, which shows it then. Raises ValueError, NoEquilibrium where there is none."""
         model.show(None)
         found = settle(model, factors, theory, Start.undeformed(model, permanent)).equilibrium
-        shown = _Shown(found.columns, model.next_revision(), theory == FIRST_ORDER, found.load_factor)
+        shown = Shown(found.columns, model.next_revision(), theory == FIRST_ORDER, found.load_factor)
         model.show(shown)
         every = np.arange(model.rods.count)
         moved = np.column_stack([found.displacement, found.rotation])
@@ -106,14 +107,6 @@ class States(NamedTuple):
         curves = {name: Curves.together([one.forces[name] for one in every]) for name in DIAGRAMS}
         moved, held = (np.concatenate([one[part] for one in every]) for part in (0, 1))
         return cls(moved, held, curves)
-
-
-@dataclass(frozen=True)
-class _Shown:
-    columns: Mapping[str, Column]
-    revision: int
-    first_order: bool
-    share: float
 
 
 def _repeated(structure: Structure, count: int) -> Structure:
