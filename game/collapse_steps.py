@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import can_collapse
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.tables import Column, Table
+
+if TYPE_CHECKING:  # statics takes a tenth of a second to import
+    from pinjoint.systems.statics.limit_analysis import LimitLoad
 
 MOST = 100  # rods up to which the way is followed without being asked for
 BEYOND = 1e-3  # of the collapse load, by which load steps go on to find it
@@ -25,10 +29,10 @@ _SAID = {
 _LAST = {"plastic mechanism": marked("collapse"), "collapse": marked("collapse")}
 
 
-def collapse_steps(model: Model) -> Table | None:
+def collapse_steps(model: Model, found: LimitLoad | None = None) -> Table | None:
     """A row for each step, from the undeformed beginning: its load factor, the moments at all ends where hinges form, the
     axial forces of rods that give way, and the largest displacement there is before collapse; None where nothing limits the
-    load, and of large structures.
+    load, and of large structures. found: the answer of limit analysis, where it is known.
     """
     if not 0 < model.rods.count <= MOST or not can_collapse(model):
         return None
@@ -36,7 +40,8 @@ def collapse_steps(model: Model) -> Table | None:
     from pinjoint.systems.statics.settle import settle
     from pinjoint.systems.statics.state import Start
 
-    start, limit = Start.undeformed(model, 0.0 * model.rods.plastic_strain), LimitLoad.of(model).factor
+    start = Start.undeformed(model, 0.0 * model.rods.plastic_strain)
+    limit = (found or LimitLoad.of(model)).factor
     if not (math.isfinite(limit) and limit > 0.0):
         return None
     told: list[tuple[float, list[str]]] = []

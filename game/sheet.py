@@ -70,8 +70,8 @@ class Solved:
         _, note = settlement.beside(left_out_of_statics(copy))
         limit = statics.limit_load
         self.said = joined([settlement.message, note, *([limit.message, limit.divides(copy)] if limit else [])])
-        self.collapse = collapse_shapes(copy) if limit else []
-        self.steps = collapse_steps(copy) if limit and theory == FIRST_ORDER else None
+        self.collapse = collapse_shapes(copy, limit) if limit else []
+        self.steps = collapse_steps(copy, limit) if limit and theory == FIRST_ORDER else None
         copy.show(statics)
         self.results = Results.of(copy)
         self.envelope = statics.envelope() if enveloped else None

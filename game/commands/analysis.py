@@ -252,8 +252,9 @@ def _limit_load(model: Model, theory: str) -> Run:
     from pinjoint.collapse_steps import collapse_steps
     from pinjoint.systems.statics.limit_analysis import LimitLoad
 
-    found: State = {"limit_load": LimitLoad.of(model).record(model), "steps": []}
-    if (steps := collapse_steps(model)) is not None:
+    limit = LimitLoad.of(model)
+    found: State = {"limit_load": limit.record(model), "steps": []}
+    if (steps := collapse_steps(model, limit)) is not None:
         heads, *rows = steps.rows()
         found["steps"] = [
             {"step": row[0], **dict(zip(map(str, heads[1:]), row[1:], strict=True))} for row in rows

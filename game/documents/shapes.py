@@ -24,6 +24,7 @@ from pinjoint.documents.assessment import LARGEST
 from pinjoint.systems.edit.arrows import extent
 
 if TYPE_CHECKING:  # statics takes a tenth of a second to import
+    from pinjoint.systems.statics.limit_analysis import LimitLoad
     from pinjoint.systems.statics.settle import Settlement
     from pinjoint.systems.statics.state import Start
 
@@ -220,11 +221,12 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     ]
 
 
-def collapse_shapes(model: Model) -> list[Shape]:
-    """The mechanism of limit analysis with its load factor, if there is one."""
+def collapse_shapes(model: Model, found: LimitLoad | None = None) -> list[Shape]:
+    """The mechanism of limit analysis with its load factor, if there is one; found: the answer, where it is known."""
     from pinjoint.systems.statics.limit_analysis import COLLAPSE, LimitLoad
 
-    found = LimitLoad.of(model) if can_collapse(model) else None
+    if found is None and can_collapse(model):
+        found = LimitLoad.of(model)
     if found is None or found.status != COLLAPSE:
         return []
     parts, motion = found.mechanism(model)

@@ -13,7 +13,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 71_918,
+    "lines": 71_926,
     "files": 385,
     "names": 3_955,  # functions, classes and constants of modules
     "public names": 2_353,
