@@ -19,7 +19,7 @@ import numpy as np
 from pinjoint.systems.program.interpreter import plain_function
 from pinjoint.systems.program.kernel import PLAIN
 
-_LAYOUT = 9  # of what is kept on disk: raise it where former files are of no use any more
+_LAYOUT = 10  # of what is kept on disk: raise it where former files are of no use any more
 
 
 def meaning_of(functions: Iterable[Callable[..., Any]]) -> str:

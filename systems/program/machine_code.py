@@ -255,12 +255,15 @@ class _Part(CPUDispatcher):
 
 
 class _EntryCode(JITCodeLibrary):
-    """Code of an entry; its parts become internal, so that the optimiser may change how they are called."""
+    """Code of an entry; its parts become private, so that the optimiser may change how they are called.
+
+    What is only internal has a name, by which the linker finds it for others, who call it as it was.
+    """
 
     def _optimize_final_module(self) -> None:
         for function in self._final_module.functions:
             if not function.is_declaration and function.linkage.name == "linkonce_odr":
-                function.linkage = "internal"
+                function.linkage = "private"
         super()._optimize_final_module()
 
 

@@ -2,11 +2,15 @@
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
+import pytest
 from numba import njit
 
 import pinjoint.systems.program.machine_code  # noqa: F401 - by which numba knows kernels
+from pinjoint.systems.plasticity.hinges import slips
+from pinjoint.systems.program.compiler import GeneratedModule
 from pinjoint.systems.program.interpreter import in_lists
 from pinjoint.systems.program.kernel import part
 
@@ -41,6 +45,48 @@ def test_constants_make_no_version_of_a_part_of_their_own() -> None:
 def test_a_part_is_interpreted_where_python_calls_it() -> None:
     assert double(1.5) == 3.0
     assert sum_of_doubles(np.array([0.25, 3.0])) == 6.5
+
+
+SUMS = """
+import numpy as np
+from pinjoint.systems.program.kernel import kept, prange, shared
+
+@kept()
+def summed(moments, stiffness, bowing):
+    total = 0.0
+    for i in range(moments.shape[0]):
+        {}
+    return total
+
+@shared
+def fill(moments, stiffness, bowing, totals):
+    for i in prange(moments.shape[0]):
+        total = 0.0
+        {}
+        totals[i] = total
+
+@kept()
+def filled(moments, stiffness, bowing):
+    totals = np.zeros(moments.shape[0])
+    fill(moments, stiffness, bowing, totals)
+    return totals.sum()
+"""
+
+
+def test_no_program_calls_what_another_one_made_of_the_same_part(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The optimiser changes how parts of an entry are called; what was linked later called them by their names."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    moments = np.linspace(-5.0, 7.0, 48).reshape(-1, 2)
+    given = moments, np.array([4.0, 2.0, 4.0]), np.array([0.1, -0.02, 0.1])
+    call = "total += slips(moments[i, {}], moments[i, {}], 1.0, 2.0, {}, stiffness, bowing)[0]"
+    lines = "\n        ".join(call.format(i % 2, 1 - i % 2, float(i)) for i in range(8))
+    module = GeneratedModule("sums", lambda: (SUMS.format(lines, lines), {"slips": slips}))
+    interpreted = module.functions["summed"].py_func(*given)
+    machine = module.load()
+    assert machine.summed(*given) == pytest.approx(interpreted, rel=1e-14)
+    assert machine.filled(*given) == pytest.approx(interpreted, rel=1e-14)
 
 
 DIGEST = """
