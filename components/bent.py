@@ -273,8 +273,8 @@ def _found(model: Model) -> tuple[_State, Kinks]:
 def inner_forces(model: Model, rows: Rows, quantity: str) -> Curves:
     """N, V (kN) or M (kN·m) along some rods; at their ends the computed columns.
 
-    M as in `moments_along`, with what acts between the ends, N × the half sine of struts and, but for first-order theory, × the
-    cubic deflection v.
+    M as in `moments_along`, with what acts between the ends, N × the half sine of struts and, but for first-order theory,
+    N × the cubic deflection v.
     """
     rods, (state, between) = model.rods, _states(model)
     name = {AXIAL: "end_axial_force", SHEAR: "shear", MOMENT: "bending_moment"}[quantity]
