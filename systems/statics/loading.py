@@ -10,10 +10,19 @@ from pinjoint.components import written
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.model import Model
-from pinjoint.systems.statics.equations import Array, Flags, Structure, largest, normalised, of_axes, of_rods
+from pinjoint.systems.statics.equations import (
+    SOFT,
+    Array,
+    Flags,
+    Structure,
+    largest,
+    normalised,
+    of_axes,
+    of_rods,
+)
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, hinges_named, moved, rod_names, slack_named
-from pinjoint.systems.statics.factor import NO_STIFFNESS, SOFT, is_stable, regular, softest, unresisted
+from pinjoint.systems.statics.factor import NO_STIFFNESS, is_stable, regular, softest, unresisted
 from pinjoint.systems.statics.follow import HALF, NARROWINGS, Path, Point, Tangent
 from pinjoint.systems.statics.relax import LARGEST_PLASTIC_ROTATION, RUNAWAY, STEPS, relax, torn
 

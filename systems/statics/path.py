@@ -19,11 +19,11 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.theory import EXACT
 from pinjoint.components.wording import cut, missing
-from pinjoint.systems.statics.equations import AXES, Array, Structure, normalised, upright
+from pinjoint.systems.statics.equations import AXES, SOFT, Array, Structure, normalised, upright
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.explain import describe_motion
 from pinjoint.systems.statics.external import External
-from pinjoint.systems.statics.factor import SOFT, regular, softest
+from pinjoint.systems.statics.factor import regular, softest
 from pinjoint.systems.statics.follow import HALF, Path, Point, Step, Tangent
 from pinjoint.systems.statics.loading import hinges_formed
 from pinjoint.systems.statics.settle import settle
