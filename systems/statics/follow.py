@@ -222,10 +222,8 @@ class Path:
         """Of all directions, with a growing or a falling load, the one most like the last."""
         elastic = self._direction(response, branches, np.zeros_like(guess), onward)
         limited, matrix, growth = self._limits(response, branches, elastic)
-        best, likeness = (
-            replace(self._direction(response, branches, guess, onward), consistent=False),
-            -math.inf,
-        )
+        best = replace(self._direction(response, branches, guess, onward), consistent=False)
+        likeness = -math.inf
         for sense in (1.0, -1.0):
             for chosen in yielding_sets(matrix, sense * elastic.sense * growth, guess[limited]):
                 giving = self._giving(limited, matrix, sense * elastic.sense * growth, chosen)

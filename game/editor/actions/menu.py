@@ -118,10 +118,8 @@ def _split(context: Context, pixel: Vector) -> None:
     rod = pick_rod(context.model, context.view, pixel)
     if rod is None:
         raise Refusal("There is no rod under the pointer; point at one.")
-    name, point = (
-        begun(heading(context.model, [rod])),
-        snapped(context.model, context.view, context.view.camera.to_model(pixel)),
-    )
+    name = begun(heading(context.model, [rod]))
+    point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
     parts = divide_at(context.model, rod, [round(share_at(rod, point), 6)])
     context.select(parts[0].ends[1])
     context.notice = tr("{rod}: divided at {particle}", rod=name, particle=parts[0].ends[1].name)

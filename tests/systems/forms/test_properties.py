@@ -133,12 +133,8 @@ def test_every_field_that_a_person_can_set_has_a_box(session: Session) -> None:
     for name, kind in (("B", Particle), ("AB", Rod)):
         targets = {box.target for box in open_of(session, name).form.boxes}
         for field in vars(kind).values():
-            decided = field in (
-                Particle.asleep,
-                Rod.yielded_at,
-                Rod.hinge_formed_at,
-                Rod.between,
-            )  # by the run, or when it was drawn
+            # By the run, or when it was drawn.
+            decided = field in (Particle.asleep, Rod.yielded_at, Rod.hinge_formed_at, Rod.between)
             if isinstance(field, Field) and field.role in SAVED and not decided:
                 axes = field.axes if field.shape else ("",)
                 wanted = {f"{kind.table}.{field.name}{'.' * bool(axis)}{axis}" for axis in axes}
