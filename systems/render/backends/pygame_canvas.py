@@ -34,9 +34,8 @@ _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
 _FILLED = 3e4  # pixels, how far away what is filled may reach
 _LONGEST = 4000  # characters that are drawn of a text: more than any window is wide
-_MANY = (
-    300  # bars, discs; and 50 pixels of strokes for each: from there on it pays to load the compiled kernels
-)
+# Bars, discs; and 50 pixels of strokes for each: from there on it pays to load the compiled kernels.
+_MANY = 300
 
 
 class Canvas:
