@@ -33,11 +33,13 @@ SAME = 1e-9  # share of a rod within which two places are one
 NEAR = 1e-3  # share of a rod within which hinges of the mechanism are one
 FLOWS = 1e-7  # of the largest rate of the mechanism: a smaller one is none
 
-NO_LIMIT = marked("no limit")
-COLLAPSE = marked("collapse")
-MECHANISM = marked("mechanism")
-OVERLOADED = marked("does not bear its weight")
-LOST = marked("limit reached")
+NO_LIMIT, COLLAPSE, MECHANISM, OVERLOADED, LOST = (
+    marked("no limit"),
+    marked("collapse"),
+    marked("mechanism"),
+    marked("does not bear its weight"),
+    marked("limit reached"),
+)
 
 
 class Section(NamedTuple):
