@@ -101,7 +101,7 @@ class World:
         self._roots: dict[Derivation, tuple[Role, ...]] = {}
         weakref.finalize(self, _delete_context, self.context)
         for kind in kinds:
-            self.tables[kind.table] = table_of(kind)(self, kind.table, kind)
+            self.tables[kind.table] = table_of(kind)(self, kind.table, kind)  # type: ignore[arg-type]
         for derivation in derivations:
             self.derive(derivation)
         for kind in kinds:
