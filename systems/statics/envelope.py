@@ -195,7 +195,8 @@ class Envelope:
     """Bounds of what k combinations do, those that are in equilibrium; without: of the others, why not. length: of rods, m.
 
     shares: by letter N, V, M, of the lengths of rods, stations along each, ascending, the last perhaps several times,
-    (rods, s); forces: bounds there, (2, rods, s). reaction, displacement: with rotations as third part, (2, n, 3).
+    (rods, s); forces: bounds there, (2, rods, s). reaction, displacement: with rotations as third part, (2, n, 3). curves:
+    of forces along all rods in the first combination, the second, …
     """
 
     combinations: tuple[str, ...]
@@ -205,6 +206,7 @@ class Envelope:
     forces: Mapping[str, Bounds]
     reaction: Bounds
     displacement: Bounds
+    curves: Mapping[str, Curves]
 
     @classmethod
     def of(
@@ -257,7 +259,7 @@ class Envelope:
         reaction = Bounds.of(found.reaction, np.array([pull, pull, turn]))
         displacement = Bounds.of(found.displacement, np.array([moved, moved, turned]))
         solved = tuple(name for name in chosen if name not in without)
-        return cls(solved, without, length, stations, forces, reaction, displacement)
+        return cls(solved, without, length, stations, forces, reaction, displacement, found.forces)
 
     def extremes(self, quantity: str, row: int) -> tuple[Extreme, Extreme]:
         """The least and the most of "N", "V" or "M" along a rod."""
@@ -267,6 +269,13 @@ class Envelope:
             name = self.named(bounds.governing[side, row, at])
             found.append(Extreme(float(bounds.values[side, row, at]), float(shares[at]) * length, name))
         return found[0], found[1]
+
+    def at(self, quantity: str, row: int, distance: float) -> list[tuple[float, str]]:
+        """The least and the most of "N", "V" or "M" so far from the start of a rod (m), and in which combinations."""
+        share = np.array([min(distance / max(float(self.length[row]), 1e-300), 1.0)])
+        values = self.curves[quantity].some(np.arange(row, len(self.curves[quantity]), len(self.length))).at(share)
+        found = Bounds.of(values[:, 0], largest(self.forces[quantity].values))
+        return [(float(value), self.named(number)) for value, number in zip(found.values, found.governing, strict=True)]
 
     def named(self, number: int) -> str:
         """The name of a combination by its number; "" where all are alike."""
