@@ -91,7 +91,7 @@ def show(context: Context, elapsed: float) -> None:
     view.enveloped = None
     if view.envelope and solved:
         try:
-            view.enveloped = context.document.envelope
+            view.enveloped = context.document.envelope([rod.name for rod in view.path if rod.exists])
             if left_out := list(view.enveloped.without):
                 said = tr(
                     "Without an equilibrium, and so left out of the envelope: {names}.", names=listed(left_out)

@@ -140,7 +140,11 @@ def _assign(model: Model, box: Box, elements: Sequence[Handle]) -> None:
         values[:, field.axes.index(part)] = value
     acted = model.settings.combination
     model.assign(elements, field.name, values)
-    if field is Settings.combinations and value in model.settings.combinations and not model.settings.combination:
+    if (
+        field is Settings.combinations
+        and value in model.settings.combinations
+        and not model.settings.combination
+    ):
         model.settings.combination = value if acted else ""  # under its new name
 
 

@@ -80,7 +80,9 @@ def along(model: Model, rod: Rod, distance: float, envelope: Any = None) -> Read
     of = dict(zip((AXIAL, SHEAR, MOMENT), scales, strict=True))
     title = f"{model.describe(rod)}, x = {written.length(there.distance, written.DIGITS)}"
     if envelope is not None:
-        bounds = [(name, envelope.at(name, rod.row, there.distance), envelope.forces[name].values) for name in of]
+        bounds = [
+            (name, envelope.at(name, rod.row, there.distance), envelope.forces[name].values) for name in of
+        ]
         found = [
             (f"{name} {side}", joined([_number(value, scale, of[name][1]), f"({governs})" * bool(governs)]))
             for name, both, scale in bounds

@@ -255,7 +255,9 @@ def test_numbers_at_places_are_those_of_the_envelope() -> None:
             continue
         for side, (value, name) in zip(("min", "max"), values, strict=True):
             assert rows[f"{letter} {side}"].endswith(f"({name})")
-            assert float(rows[f"{letter} {side}"].split(" ")[0].replace("−", "-")) == pytest.approx(value, rel=1e-3)
+            assert float(rows[f"{letter} {side}"].split(" ")[0].replace("−", "-")) == pytest.approx(
+                value, rel=1e-3
+            )
     session.model.tag_only([session.particles["A"]], Hovered)
     session.frame(0.0)
     assert session.view.pointed is not None
@@ -309,7 +311,7 @@ def test_commands_draw_cases_combinations_and_envelopes(tmp_path: Path) -> None:
         assert said in made.read_text(encoding="utf-8")
     assert main(["render", str(model), "--envelope", "--output", str(made)]) == 2
     assert main(["sheet", str(model), "--envelope", "--output", str(tmp_path / "sheet.pdf")]) == 0
-    figures = figures_of(contents(Solved(parse(beam()), "first-order", enveloped=True), LAYOUTS[0]))
+    figures = figures_of(contents(Solved(parse(beam()), "first-order", ()), LAYOUTS[0]))
     captions = [figure.caption.text for figure in figures]
     assert any(caption.startswith("Envelope of ULS and all: Bending moments M") for caption in captions)
     assert main(["sheet", str(model), "--combination", "snow", "--output", str(tmp_path / "sheet.pdf")]) == 0
