@@ -105,14 +105,12 @@ class Axes:
         """Points at shares (k,) or (n, k), shape (n, k, 2)."""
         along = shares[..., None]
         chord = self.start[:, None] * (1.0 - along) + self.end[:, None] * along
-        found: Array = chord + self._away(self.bow, self.drift, shares)
-        return found
+        return chord + self._away(self.bow, self.drift, shares)
 
     def tangents(self, shares: Array) -> Array:
         """Their directions at shares (k,) or (n, k), not of unit length, shape (n, k, 2)."""
         drift = None if self.drift is None else self.drift.derivative
-        found: Array = (self.end - self.start)[:, None] + self._away(self.bow.derivative, drift, shares)
-        return found
+        return (self.end - self.start)[:, None] + self._away(self.bow.derivative, drift, shares)
 
     def _away(self, bow: Curves, drift: Curves | None, shares: Array) -> Array:
         found: Array = bow.at(shares)[..., None] * self.left[:, None]
@@ -127,8 +125,7 @@ class Axes:
         second = self.bow.derivative.derivative.most
         if self.drift is not None:
             second = second + self.drift.derivative.derivative.most
-        most: Array = np.sqrt(second / 8.0)
-        return most
+        return np.sqrt(second / 8.0)
 
     def pieces(self, rows: Rows, fineness: float) -> Lines | None:
         """These axes, of the rods in `rows`, cut into pieces flat within `fineness` (m); None where all look straight."""
@@ -251,8 +248,7 @@ def _states(model: Model) -> tuple[_State, Kinks]:
         with np.errstate(invalid="ignore"):  # of rods whose ends are nowhere, which are not drawn
             found = _found(model)
         model.bent = model.revision, found
-    known: tuple[_State, Kinks] = found
-    return known
+    return found
 
 
 def _found(model: Model) -> tuple[_State, Kinks]:

@@ -511,8 +511,7 @@ class View:
 
 def drawn_positions(model: Model) -> NDArray[np.float64]:
     """Where particles are drawn (m), shape (n, 2): original position + displacement × scale."""
-    drawn: NDArray[np.float64] = model.particles.position + model.particles.displacement * drawn_scale(model)
-    return drawn
+    return model.particles.position + model.particles.displacement * drawn_scale(model)
 
 
 def drawn_places(model: Model) -> NDArray[np.float64]:

@@ -405,8 +405,7 @@ class World:
         with self.transaction(tr("new {noun}", noun=tr(kind.noun))):
             self.execute(Create(kind, count, kind.completed(checked, count)))
             kind.after_change(table, np.arange(table.count - count, table.count), table.fields)
-        handles: list[H] = table.handles[table.count - count :]
-        return handles
+        return table.handles[table.count - count :]
 
     def give(self, name: str, values: Column) -> None:
         """Execute the command that gives a whole column, named "table.field", computed values."""

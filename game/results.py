@@ -194,8 +194,7 @@ def _between(model: Model) -> float:
 
 def _cross(arm: Array, force: Array) -> Array:
     """Moments (n,) of forces (n, 2)."""
-    moment: Array = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
-    return moment
+    return arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
 
 
 def _parts(

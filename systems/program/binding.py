@@ -381,8 +381,7 @@ def _check_role(system: StepSystem, model: Model) -> None:
 def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., Any]:
     """The function that "module:function" names, or the function itself. Raises ProgramError, which names the owner."""
     if not isinstance(kernel, str):
-        found: Callable[..., Any] = getattr(kernel, "__func__", kernel)  # of a class: a method
-        return found
+        return getattr(kernel, "__func__", kernel)  # of a class: a method
     module, _, attribute = kernel.partition(":")
     try:
         found = getattr(importlib.import_module(module), attribute)

@@ -228,8 +228,7 @@ def _modes(structure: Structure, stiffness: Matrix, softening: Matrix, count: in
             )
             raise NoEquilibrium("collapse", message) from None
     order = np.argsort(-values)[:count]
-    found: Array = vectors[:, order[values[order] > NOTHING * np.abs(values).max(initial=0.0)]]
-    return found
+    return vectors[:, order[values[order] > NOTHING * np.abs(values).max(initial=0.0)]]
 
 
 def _every(weight: Array, one: Matrix, other: Matrix, count: int) -> tuple[Array, Array]:
@@ -283,8 +282,7 @@ def _work(structure: Structure, rods: Response, mode: Array, compression: Array)
     nearer = 0.5 * aside**2 / np.where(rods.length > 0.0, rods.length, np.inf)
     if structure.bending is not None:
         nearer += structure.bending.bow(structure.slope_rates(mode, rods))[1]
-    work: Array = compression * nearer
-    return work
+    return compression * nearer
 
 
 def members(model: Model) -> Rows:
@@ -310,8 +308,7 @@ def _effective_length(model: Model, axial_force: Array) -> Array:
     ratio = np.divide(
         model.rods.bending_stiffness, -axial_force, out=np.full(len(axial_force), np.nan), where=pressed
     )
-    found: Array = np.pi * np.sqrt(ratio)
-    return found
+    return np.pi * np.sqrt(ratio)
 
 
 def _why_none(model: Model, live: Array, *, stiffens: bool) -> str:

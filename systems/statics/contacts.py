@@ -114,14 +114,12 @@ class Discs:
 
     def gap(self, displacement: Array, pairs: Rows) -> Array:
         """Distances (k,) between the rims of pairs (k, 2), negative where they overlap."""
-        gap: Array = np.hypot(*self.lines(displacement, pairs).T) - self.radius[pairs].sum(axis=1)
-        return gap
+        return np.hypot(*self.lines(displacement, pairs).T) - self.radius[pairs].sum(axis=1)
 
     def touching(self, displacement: Array) -> Rows:
         """Pairs (k, 2) that overlap by more than round-off."""
         pairs = self.near(displacement, np.zeros(len(self.radius)))
-        overlapping: Rows = pairs[self.gap(displacement, pairs) < -TOUCHING * self.radius[pairs].sum(axis=1)]
-        return overlapping
+        return pairs[self.gap(displacement, pairs) < -TOUCHING * self.radius[pairs].sum(axis=1)]
 
     def moves(self, displacement: Array) -> Array:
         """The distance (m) that each body may move, (N,), before the next search for contacts."""
@@ -318,5 +316,4 @@ class Sinking:
 
 def _travel(displacement: Array, start: Array) -> Array:
     """How far each body has moved between two fields of displacements (m), (N,)."""
-    far: Array = np.hypot(*(displacement - start)[:, :2].T)
-    return far
+    return np.hypot(*(displacement - start)[:, :2].T)

@@ -167,8 +167,7 @@ def _factors(given: Sequence[float] | float) -> list[float]:
             factor=factor,
             largest=LARGEST,
         )
-    found: list[float] = factors.tolist()
-    return found
+    return factors.tolist()
 
 
 class _Settling:

@@ -243,8 +243,7 @@ class Comparison:
         if quantity in ("rotation", "reaction_moment"):
             clamped = held[:, 2] if quantity == "reaction_moment" else ~particles.fixed_rotation
             return np.asarray(rigid_joints(self.model) & clamped)
-        concerned: Flags = held[:, :2] if quantity == "reaction" else ~particles.fixed
-        return concerned
+        return held[:, :2] if quantity == "reaction" else ~particles.fixed
 
     def scale(self, quantity: str) -> float:
         """The largest exact value of the quantity; where it is rounding, of its unit; 0 where that is rounding."""

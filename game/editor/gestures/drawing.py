@@ -260,8 +260,7 @@ class DrawArrow(Drawing):
 
     @property
     def _field(self) -> Field[Any]:
-        found: Field[Any] = getattr(type(self.elements[0]), self.field)
-        return found
+        return getattr(type(self.elements[0]), self.field)
 
     @property
     def unit(self) -> tuple[str, str]:
@@ -345,8 +344,7 @@ class DrawSpanLoad(DrawArrow):
 
     @property
     def _field(self) -> Field[Any]:
-        found: Field[Any] = getattr(SpanLoad, self.field)
-        return found
+        return getattr(SpanLoad, self.field)
 
     def start(self, context: Context) -> Vector:
         """Where the arrow begins (m): at the last place on the rod, as it is drawn."""

@@ -174,10 +174,9 @@ class Canvas:
         return image, (round(left), round(mark.y + middle) - ascent)
 
     def _font(self, size: int, weight: str) -> pygame.font.Font:
-        font: pygame.font.Font = self._kept(
+        return self._kept(
             ("font", size, weight), lambda: pygame.font.Font(io.BytesIO(self._files[weight]), size)
         )
-        return font
 
 
 def _written(font_of: Callable[[int, str], pygame.font.Font], mark: Text) -> tuple[pygame.Surface, float, int]:

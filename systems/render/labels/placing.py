@@ -296,8 +296,7 @@ class _Placing:
         angle = np.arctan2(outward[:, 1], outward[:, 0])[:, None] + turns
         direction = np.stack([np.cos(angle), np.sin(angle)], axis=2)
         reach = lengths * self.unit + (np.abs(direction) * half[:, None]).sum(axis=2)
-        found: Points = direction * reach[:, :, None]
-        return found
+        return direction * reach[:, :, None]
 
     def _stand(
         self, label: Label, place: int, middle: Points, cells: Sequence[int], line: _Line | None

@@ -497,8 +497,7 @@ def _continued(sheet: Sheet, rows: Rows, constant: Values, largest: float) -> Tr
     before = np.full(len(sheet.centres), np.nan)
     before[end] = constant
     joined = np.bincount(sheet.ends.ravel(), minlength=len(sheet.centres)) == 2
-    same: Truths = joined[start] & (np.abs(before[start] - constant) <= _ALIKE * largest)
-    return same
+    return joined[start] & (np.abs(before[start] - constant) <= _ALIKE * largest)
 
 
 def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values) -> Truths:
@@ -587,5 +586,4 @@ def _in_rows(at: Points, way: Points, across: Sequence[Values], along: Points, s
     """Places of values by points (n, 2): at distances (n,) each along unit vectors `way` (n, 2), and in each of these
     rows shifted by `slides` (n, k) along others, (n, rows, k, 2)."""
     offset = np.stack(across, axis=1)[:, :, None, None] * way[:, None, None, :]
-    places: Points = at[:, None, None, :] + offset + slides[:, None, :, None] * along[:, None, None, :]
-    return places
+    return at[:, None, None, :] + offset + slides[:, None, :, None] * along[:, None, None, :]

@@ -158,8 +158,7 @@ def draw_inextensible(sheet: Sheet) -> None:
 
 def gaps(lengths: Values, unit: float) -> Values:
     """What is left free between joints and rods of these lengths where they are drawn apart, in pixels."""
-    found: Values = np.minimum(_GAP_SHARE * lengths, _WIDEST_GAP * unit)
-    return found
+    return np.minimum(_GAP_SHARE * lengths, _WIDEST_GAP * unit)
 
 
 # --- loads between ends ------------------------------------------------------------------------------

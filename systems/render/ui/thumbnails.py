@@ -84,8 +84,7 @@ def _corners(mark: Mark) -> Points:
             return np.concatenate([mark.at - reach, mark.at + reach])
         case Stamps():
             shape = np.concatenate([polygon for _, polygon in turned_parts(mark)])
-            placed: Points = (mark.at[:, None] + shape).reshape(-1, 2)
-            return placed
+            return (mark.at[:, None] + shape).reshape(-1, 2)
         case _:
             return np.zeros((0, 2))
 
