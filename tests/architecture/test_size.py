@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 71_810,
+    "lines": 71_951,
     "files": 385,
-    "names": 3_955,  # functions, classes and constants of modules
-    "public names": 2_355,
-    "numbers": 1_523,  # other than 0, 1 and 2, in constants and defaults
+    "names": 3_962,  # functions, classes and constants of modules
+    "public names": 2_359,
+    "numbers": 1_525,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 58_239,
+    "lines of tests": 58_391,
 }
 
 
