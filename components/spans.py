@@ -408,7 +408,8 @@ def values(polynomials: Column, shares: Column) -> Column:
     """Values of polynomials (n, d) at shares (k,) or (n, k), shape (n, k)."""
     found = np.zeros((len(polynomials), np.shape(shares)[-1]))
     for coefficient in polynomials.T[::-1]:
-        found = found * shares + coefficient[:, None]
+        found *= shares
+        found += coefficient[:, None]
     return found
 
 

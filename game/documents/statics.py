@@ -33,7 +33,6 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.limit_analysis import LimitLoad
     from pinjoint.systems.statics.second_order import SecondOrder
     from pinjoint.systems.statics.settle import Settlement
-    from pinjoint.systems.statics.state import StaticState
 
 PLASTIC = frozenset(
     ("yield", "hinge", "buckling", "plastic mechanism", "collapse")
@@ -322,18 +321,8 @@ class Statics:
             self._settlement, self.problem, self.motion = None, str(error), None
             self._columns = {}
             return
-        self._columns = self._shown(self._settlement.final)
+        self._columns = self._settlement.final.shown
         self.motion = last_motion(self._model, self._settlement)
-
-    def _shown(self, state: StaticState) -> Mapping[str, Column]:
-        """What columns show of a state, by "table.field"."""
-        from pinjoint.systems.statics.external import External
-
-        acting = External.of(self._model, self._model.settings.theory).at(state.load_factor)
-        return state.columns | {
-            "particles.applied_force": acting[:, :2],
-            "particles.applied_moment": acting[:, 2] if acting.shape[1] > 2 else np.zeros(len(acting)),
-        }
 
     def on_the_way(self, parts: int) -> Iterator[float]:
         """Let the model show the states on the way through the load steps, each in so many parts; yields load factors."""
@@ -344,9 +333,7 @@ class Statics:
         try:
             for state in self.settled(load_factors=factors).states:
                 if state.balanced:
-                    with model.own_state():
-                        columns = self._shown(state)
-                    model.show(Shown(columns, model.next_revision(), self.first_order, state.load_factor))
+                    model.show(Shown(state.shown, model.next_revision(), self.first_order, state.load_factor))
                     yield state.load_factor
         finally:
             model.show(outer)

@@ -172,7 +172,8 @@ class Path:
     def start(self, displacement: Array, plastic_strain: Array) -> Point:
         """The point at t = 0 in this state; rods beyond a strength yield at once."""
         plastic_strain = self.structure.yielding_parts(plastic_strain)
-        response = self.respond(displacement, plastic_strain, 0.0)
+        moved = displacement.any() or plastic_strain.any() or self.share(0.0)
+        response = self.respond(displacement, plastic_strain, 0.0) if moved else self.structure.unmoved
         if response.flowing.any():
             response = self.respond(displacement, response.plastic_strain, 0.0)
         return Point(displacement, response.plastic_strain, 0.0, response, 0.0)

@@ -462,6 +462,7 @@ class _Settling:
             self.load,
             load_factor=self.factor,
             dissipated_plastic=self.point.dissipated,
+            acting=self.external.at(self.factor),
             residual=self._residual(),
             status=status,
             message=joined(told),

@@ -207,6 +207,7 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
         moved,
         load,
         load_factor=factor,
+        acting=load,
         dissipated_plastic=0.0,
         residual=structure.largest(unbalanced) / forces if forces > 0.0 else 0.0,
         status=STABLE,

@@ -238,11 +238,11 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) 
         return None
     side = np.full(len(every), -1.0 if quantity == MOMENT else 1.0)
     few = every.with_kinks(np.linspace(0.0, 1.0, 5))
-    axes = stations(baseline(sheet, np.arange(len(every))), few, side)
-    fitting = max(largest, room * crowding(sheet, *axes, every.at(few), taken))
+    whole = baseline(sheet, np.arange(len(every)))
+    fitting = max(largest, room * crowding(sheet, *stations(whole, few, side), every.at(few), taken))
     scale = room * model.settings.diagram_scale / steady(sheet, (f"diagrams.{quantity}", 0), fitting)
     scale = min(scale, _FAR / largest)
-    base, curves, side = baseline(sheet, rows), every.some(rows), side[rows]
+    base, curves, side = whole.some(rows), every.some(rows), side[rows]
     most = np.clip(_PIECES // len(rows), 4, 24)  # more where rods are few and long
     tall = math.sqrt(scale * largest / FLAT)  # so many chords of a parabola so high are that flat
     pieces = int(np.clip(max(sheet.rod_length / (_PIECE * sheet.unit), tall), 8, most))
