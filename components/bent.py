@@ -190,10 +190,8 @@ class Station(NamedTuple):
         length = float((rods.original_length if model.first_order else rods.length)[row])
         at = np.array([min(distance / length, 1.0) if length > 0.0 else 0.0])
         forces = {name: float(inner_forces(model, rows, name).at(at)[0, 0]) for name in DIAGRAMS}
-        (start, end), (aside, slope) = (
-            model.particles.displacement[rods.between[row]],
-            deflected(model, row, at),
-        )
+        start, end = model.particles.displacement[rods.between[row]]
+        aside, slope = deflected(model, row, at)
         moved = start + at[0] * (end - start) + aside[0]
         rotation = chord_rotation(model)[row] + slope[0]
         return cls(float(at[0]) * length, forces, moved, float(rotation))
@@ -335,11 +333,9 @@ def borne_between(model: Model, acting: Acting | None = None) -> Array:
 
     acting: combinations, whole, of which these follow one another; None: as much as acts in what the model shows.
     """
-    rods, count, between = (
-        model.rods,
-        1 if acting is None else len(acting.permanent),
-        Kinks.of(model, model.share if acting is None else 1.0, acting),
-    )
+    rods = model.rods
+    count = 1 if acting is None else len(acting.permanent)
+    between = Kinks.of(model, model.share if acting is None else 1.0, acting)
     found = np.zeros((count, model.particles.count, 2))
     if len(between.row):
         on_ends = between.on_ends(count * rods.count).reshape(count, -1, 2)

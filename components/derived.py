@@ -73,10 +73,7 @@ def unforced(world: World, original: Column, rest: Column, acting: Acting) -> di
     misfit = (
         share * (original - rest * (1.0 + expansion * rods.temperature_change)) - rest * expansion * by_loads[0]
     )
-    return {
-        "misfit": misfit,
-        "free_curvature": -expansion * (share * rods.temperature_gradient + by_loads[1]),
-    }
+    return {"misfit": misfit, "free_curvature": -expansion * (share * rods.temperature_gradient + by_loads[1])}
 
 
 @derives(

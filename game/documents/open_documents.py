@@ -217,10 +217,8 @@ class OpenDocument:
                     found.final.contacts, 1000.0 * found.final.contact_force
                 )
         self.assessment.disturb("settled")
-        account, yielded = (
-            [found.account],
-            np.flatnonzero((found.final.permanent != start.permanent).any(axis=1)),
-        )
+        account = [found.account]
+        yielded = np.flatnonzero((found.final.permanent != start.permanent).any(axis=1))
         if len(yielded) and not found.events:  # at once: what it began from is beyond the strengths
             rod = model.describe(model.rods[yielded[0]])
             said = plural(

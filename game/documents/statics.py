@@ -34,9 +34,8 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.second_order import SecondOrder
     from pinjoint.systems.statics.settle import Settlement
 
-PLASTIC = frozenset(
-    ("yield", "hinge", "buckling", "plastic mechanism", "collapse")
-)  # kinds of events beyond the elastic range
+# Kinds of events beyond the elastic range.
+PLASTIC = frozenset(("yield", "hinge", "buckling", "plastic mechanism", "collapse"))
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
 _MOST_COMPARED = 300  # rods, up to which both theories take a moment only
 REST = 0.2  # s without an edit, after which a window compares them

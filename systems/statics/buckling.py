@@ -36,9 +36,8 @@ from pinjoint.systems.statics.theory import FULL, linear
 RESTARTS = 100
 LANCZOS = 40  # vectors that the lowest of larger structures are found from, at least
 MODES = 5
-IDLE = (
-    1e-6  # of the work of compression on the member that does most: those that do less take no part in a mode
-)
+# Of the work of compression on the member that does most: those that do less take no part in a mode.
+IDLE = 1e-6
 IN_LINE = 1e-6  # sine of the angle between rods, and share of their bending stiffness
 NOTHING = 1e-10  # of the largest axial force, or of the largest eigenvalue: round-off
 # Of the rods' stiffness: by what tension is to hold a mechanism before it gives way.

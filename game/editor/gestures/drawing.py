@@ -374,10 +374,8 @@ class DrawSpanLoad(DrawArrow):
         context.notice = tr(self.says, rods=begun(rod.said), load=self.shown(value), place=place)
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        made, along = (
-            super().preview(context, pixel),
-            list(map(self._at, self.places)),
-        )
+        made = super().preview(context, pixel)
+        along = list(map(self._at, self.places))
         if made is None or len(along) == 1:
             return made
         return replace(made, kind="distributed force", along=((along[0], along[1]),))
