@@ -224,12 +224,18 @@ class Statics:
         factors = settings.load_steps if load_factors is None else load_factors
         return settle(model, factors, theory or settings.theory, Start.undeformed(model, self._permanent()))
 
-    def envelope(self, names: Sequence[str] = (), theory: str | None = None) -> Envelope:
-        """Bounds of what these combinations do, all there are if none is named, by a theory. Raises ValueError."""
+    def envelope(
+        self, names: Sequence[str] = (), theory: str | None = None, path: Sequence[str] = ()
+    ) -> Envelope:
+        """Bounds of what these combinations do, all there are if none is named, by a theory; or of what a force does that
+        moves along a path of rods. Raises ValueError.
+        """
         from pinjoint.systems.statics.envelope import Envelope
 
         model, settings = self._model, self._model.settings
         with model.own_state():
+            if path:
+                return Envelope.under_moving_force(model, path)
             return Envelope.of(model, names, theory or settings.theory, settings.load_steps, self._permanent())
 
     def second_order(self, elapsed: float | None = None) -> str:

@@ -120,3 +120,14 @@ def test_a_limit_point_where_a_hinge_forms_is_one_from_which_the_load_falls(tmp_
     assert kinds[:last] == ["hinge"] * 4
     assert curve.events[last].load_factor == curve.events[last - 1].load_factor < 2.5
     assert "from here on the load falls" in curve.events[last].message
+
+
+def test_the_window_plots_it_beyond_the_load_steps() -> None:
+    """von Mises's truss under less than it bears, and without any load at the end: the curve passes its limit points."""
+    for steps in ([0.5], [0.5, 0.0]):
+        session = Session.open("von_mises")
+        session.settings.load_steps = steps
+        session.press("ctrl+u")
+        [shown] = plots(session)
+        [(_, _, factor)] = shown.curves
+        assert factor[-1] == pytest.approx(1.0)
