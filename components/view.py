@@ -336,7 +336,7 @@ class View:
     free_bodies: bool = False
     shape: Shape | None = None
     swing: float = 1.0
-    near_buckling: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    near_buckling: tuple[int, ...] = ()
     pointed: Readout | None = None
     pin: Pin | None = None
     fitted: bool = False

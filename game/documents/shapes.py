@@ -80,18 +80,19 @@ class Shapes:
         self._time += elapsed * (self._shown is None or self._shown.swings)
         return math.cos(2.0 * math.pi * self._time / PERIOD)
 
-    def near_buckling(self, elapsed: float) -> NDArray[np.intp]:
+    def near_buckling(self, elapsed: float) -> tuple[int, ...]:
         """Rows of the rods whose compression is nearly that at which they buckle, once the hand has rested after an edit."""
         model, newest, rods = self._model, self._model.newest(Role.DOCUMENT), self._model.rods
         if not 0 < rods.count <= _MOST_PULSING or not rods.bending_stiffness.any():
-            return np.zeros(0, dtype=np.intp)
+            return ()
         if self._critical[0] != newest:
             self._rest = newest, elapsed + (self._rest[1] if self._rest[0] == newest else 0.0)
             if self._rest[1] > REST and (rods.axial_force < 0.0).any():
                 self._critical = newest, _critical_compression(model)
         if len(self._critical[1]) != rods.count:
-            return np.zeros(0, dtype=np.intp)
-        return np.flatnonzero(-rods.axial_force > NEAR_BUCKLING * self._critical[1])
+            return ()
+        pressed = -rods.axial_force > NEAR_BUCKLING * self._critical[1]
+        return tuple(np.flatnonzero(pressed).tolist())
 
     def next(self) -> None:
         """Go on to the next: mechanisms, in statics collapse, buckling by its load, modes by their frequency, elsewhere

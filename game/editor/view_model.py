@@ -107,7 +107,7 @@ def show(context: Context, elapsed: float) -> None:
     view.provisional = _provisional(context)
     view.shape = context.document.shapes.shown or (statics.motion if solved else None)
     view.near_buckling = context.document.shapes.near_buckling(elapsed)
-    moves = view.shape is not None or len(view.near_buckling)
+    moves = view.shape is not None or view.near_buckling
     view.swing = context.document.shapes.swing(elapsed) if moves else 1.0
     _show_readouts(context)
     _point_out(context)
