@@ -19,7 +19,7 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import KINDS, Model
 from pinjoint.components.obstacles import Shape
 from pinjoint.components.table import fields_of
-from pinjoint.components.wording import is_identifier
+from pinjoint.components.wording import is_identifier, missing
 from pinjoint.documents import models
 from pinjoint.documents.format import Upgrade
 from pinjoint.mods.declared import check
@@ -125,6 +125,10 @@ class App:
                 raise WrongValue(
                     "{name}.{field}: a mod cannot add derived columns.", name=kind.__name__, field=field.name
                 )
+            tables = [other.table for other in others]
+            if field.references is not None and field.references not in tables:
+                where = f"{kind.__name__}.{field.name}:"
+                raise ModError(joined([where, missing(marked("tables"), str(field.references), tables)]))
             field.check_default(kind.__name__)
         for point in kind.points:
             if point not in fields or fields[point].shape != (2,) or fields[point].role is not Role.DOCUMENT:
