@@ -13,9 +13,9 @@ from pinjoint.components.cases import SOURCES, Acting
 from pinjoint.components.field import Column, Field
 from pinjoint.components.load import SpanLoad, varying
 from pinjoint.components.particle import DEFAULT_MASS
-from pinjoint.components.rod import AT_STRENGTH, DEFAULT_STIFFNESS, euler_load, plastic_moments
+from pinjoint.components.rod import AT_STRENGTH, DEFAULT_STIFFNESS, euler_load, has_struts, plastic_moments
 from pinjoint.components.section import Section
-from pinjoint.components.spans import Curves, Kinks
+from pinjoint.components.spans import Curves, Kinks, extremes
 from pinjoint.components.table import Table
 from pinjoint.components.world import Derivation, World
 
@@ -73,10 +73,7 @@ def unforced(world: World, original: Column, rest: Column, acting: Acting) -> di
     misfit = (
         share * (original - rest * (1.0 + expansion * rods.temperature_change)) - rest * expansion * by_loads[0]
     )
-    return {
-        "misfit": misfit,
-        "free_curvature": -expansion * (share * rods.temperature_gradient + by_loads[1]),
-    }
+    return {"misfit": misfit, "free_curvature": -expansion * (share * rods.temperature_gradient + by_loads[1])}
 
 
 @derives(
@@ -169,8 +166,7 @@ def by_fixity(fixity: Column) -> tuple[Column, dict[str, Column]]:
 
 def initial_slopes(curvature: Column, length: Column, fixity: Column) -> Column:
     """Slopes of ends without moments of rods so curved (…, rods), by how firmly their ends are joined, (…, rods, 2)."""
-    found: Column = (0.5 * curvature * length)[..., None] * (fixity > 0.0) * [-1.0, 1.0] + 0.0
-    return found
+    return (0.5 * curvature * length)[..., None] * (fixity > 0.0) * [-1.0, 1.0] + 0.0
 
 
 def own_slopes(fixity: Column) -> Column:
@@ -181,8 +177,7 @@ def own_slopes(fixity: Column) -> Column:
     """
     start, end = fixity.T
     rows = [[start * (4.0 - end), 2.0 * (start - 1.0) * end], [2.0 * (end - 1.0) * start, end * (4.0 - start)]]
-    own: Column = np.moveaxis(np.array(rows), -1, 0) / (4.0 - start * end)[:, None, None]
-    return own
+    return np.moveaxis(np.array(rows), -1, 0) / (4.0 - start * end)[:, None, None]
 
 
 @derives("rods", "span_load", f"fixity {_BETWEEN}")
@@ -349,8 +344,7 @@ def chord_rotation(world: World) -> Column:
     difference = rods.difference
     sine = difference[:, 0] * relative[:, 1] - difference[:, 1] * relative[:, 0]
     if world.first_order:
-        small: Column = sine / np.maximum(rods.original_length, 1e-300) ** 2
-        return small
+        return sine / np.maximum(rods.original_length, 1e-300) ** 2
     chord = np.arctan2(sine, (difference * (difference + relative)).sum(axis=1))
     rotation = particles.rotation[rods.between] - rods.plastic_rotation
     return with_full_turns(chord, rods.turning_shares, rotation)
@@ -359,15 +353,14 @@ def chord_rotation(world: World) -> Column:
 def with_full_turns(chord: Column, turning_shares: Column, rotation: Column) -> Column:
     """Rotations of chords (rods,) with those full turns that bring them nearest to the mean of their rigid ends."""
     mean = (turning_shares * rotation).sum(axis=1)
-    turned: Column = chord + math.tau * np.rint((mean - chord) / math.tau)
-    return turned
+    return chord + math.tau * np.rint((mean - chord) / math.tau)
 
 
 @derives(
     "rods",
     "end_axial_force shear bending_moment end_rotation largest_moment",
     "particles.displacement particles.rotation between difference axial_force end_moment turning_shares"
-    f" plastic_rotation {_BETWEEN} span_load bending_stiffness free_curvature",
+    f" plastic_rotation {_BETWEEN} span_load bending_stiffness free_curvature lateral_deflection",
 )
 def present_diagrams(world: World) -> None:
     """Axial force, shear and bending moment at both ends of every rod, and the rotations of these, in the present state.
@@ -380,7 +373,8 @@ def present_diagrams(world: World) -> None:
     length = np.hypot(present[:, 0], present[:, 1])
     axis = present / np.where(length > 0.0, length, 1.0)[:, None]
     rotation, forces = particles.rotation[rods.between], (rods.axial_force, rods.end_moment)
-    for name, values in diagrams(world, axis, length, chord_rotation(world), rotation, forces).items():
+    aside = rods.lateral_deflection if has_struts(world) else None
+    for name, values in diagrams(world, axis, length, chord_rotation(world), rotation, forces, aside).items():
         world.writable(f"rods.{name}")[...] = values
 
 
@@ -391,6 +385,7 @@ def diagrams(
     chord: Column,
     rotation: Column,
     forces: tuple[Column, Column],
+    aside: Column | None = None,
     *,
     share: float = 1.0,
     first_order: bool = False,
@@ -399,7 +394,8 @@ def diagrams(
 
     axis, length, chord: directions (rods, 2), lengths (m) and rotations (rad) of the chords; rotation: of the particles at
     both ends, (rods, 2). forces: axial (rods,), and moments on both ends, counter-clockwise (rods, 2).
-    first_order: axes count as straight where forces act on them.
+    aside: lateral deflections of struts (m), (rods,); None where there are none. first_order: other axes count as straight
+    where forces act on them.
     """
     rods, (axial_force, moment) = world.tables["rods"], forces
     between, bent = Kinks.of(world, share), 0.0 if first_order else 1.0
@@ -414,12 +410,15 @@ def diagrams(
     slopes = all_slopes(rods, slopes, on_axis(between.on_clamped(rods.rest_length), axis)[1])
     bending_moment, left = moment * [-1.0, 1.0], np.concatenate([-y, x], axis=1)
     thrust = (bent * axial_force * length)[:, None] * cubic(*slopes.T)
+    moments = moments_along(bending_moment, between, left, length, thrust)
+    if aside is not None:
+        moments = moments.plus(np.outer(axial_force * aside, HALF_SINE))
     return {
         "end_axial_force": axial_force[:, None] - on_ends[..., 0] * x - on_ends[..., 1] * y,
         "shear": shear[:, None] + on_ends[..., 1] * x - on_ends[..., 0] * y,
         "bending_moment": bending_moment,
         "end_rotation": chord[:, None] + slopes,
-        "largest_moment": _largest_moment(moments_along(bending_moment, between, left, length, thrust), length),
+        "largest_moment": _largest_moment(moments, length),
     }
 
 
@@ -442,8 +441,12 @@ def all_slopes(rods: Table[Any], slopes: Column, load: Column) -> Column:
     warped = np.where(bent, -0.5 * rods.free_curvature * length, 0.0)
     free = np.array([1.0, -1.0]) * warped[:, None] + loaded / 3.0 - loaded[:, ::-1] / 6.0  # between hinges
     own = own_slopes(rods.fixity)
-    found: Column = np.einsum("rij,rj->ri", own, slopes) + np.einsum("rij,rj->ri", np.eye(2) - own, free)
-    return found
+    return np.einsum("rij,rj->ri", own, slopes) + np.einsum("rij,rj->ri", np.eye(2) - own, free)
+
+
+# sin πξ as a u + b u² of u = ξ (1 − ξ), exact in the middle and at quarters, elsewhere but for 0.002.
+_QUARTIC = 256.0 / 3.0 * (0.75 - math.sqrt(0.5))
+HALF_SINE = np.array([0.0, 4.0 - 0.25 * _QUARTIC, 1.25 * _QUARTIC - 4.0, -2.0 * _QUARTIC, _QUARTIC])
 
 
 def cubic(start: Column, end: Column) -> Column:
@@ -465,6 +468,12 @@ def moments_along(ends: Column, between: Kinks, left: Column, length: Column, by
 def _largest_moment(moments: Curves, length: Column) -> Column:
     """The bending moment of largest size, and its distance from the start (m), of every rod."""
     row, low, high, polynomials = moments.stretches
+    if polynomials.shape[1] > 4:  # of struts
+        both, places = extremes(moments.stretches)
+        most = np.abs(both).argmax(axis=1)[:, None]
+        return np.hstack(
+            [np.take_along_axis(both, most, 1), np.take_along_axis(places, most, 1) * length[:, None]]
+        )
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         start, linear, square, cube = polynomials.T
         root = np.sqrt(np.maximum(square**2 - 3.0 * cube * linear, 0.0))

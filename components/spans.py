@@ -31,8 +31,7 @@ _POWERS = 6  # coefficients of a deflection below a force that grows
 def _tail(place: Column, power: Rows) -> Column:
     """(1 − a)ⁿ/n!, 0 where n is negative."""
     known = np.maximum(power, 0)
-    found: Column = np.where(power < 0, 0.0, (1.0 - place) ** known / _FACTORIALS[known])
-    return found
+    return np.where(power < 0, 0.0, (1.0 - place) ** known / _FACTORIALS[known])
 
 
 def groups(first: Rows, last: Rows) -> tuple[Rows, Rows]:
@@ -274,9 +273,12 @@ class Curves:
         return len(self.polynomials)
 
     def plus(self, polynomials: Column) -> Curves:
-        """With these polynomials added, of as many coefficients or fewer."""
-        found = self.polynomials.copy()
-        found[:, : polynomials.shape[1]] += polynomials
+        """With these polynomials added."""
+        found, added = self.polynomials, polynomials
+        if found.shape[1] < added.shape[1]:
+            found, added = added, found
+        found = found.copy()
+        found[:, : added.shape[1]] += added
         return Curves(found, *self._kinks)
 
     def times(self, factor: float) -> Curves:
@@ -409,17 +411,16 @@ def values(polynomials: Column, shares: Column) -> Column:
     """Values of polynomials (n, d) at shares (k,) or (n, k), shape (n, k)."""
     found = np.zeros((len(polynomials), np.shape(shares)[-1]))
     for coefficient in polynomials.T[::-1]:
-        found = found * shares + coefficient[:, None]
+        found *= shares
+        found += coefficient[:, None]
     return found
 
 
 def derivative(polynomials: Column) -> Column:
     """Of polynomials (n, d), by ξ, (n, d − 1)."""
-    found: Column = polynomials[:, 1:] * np.arange(1.0, polynomials.shape[1])
-    return found
+    return polynomials[:, 1:] * np.arange(1.0, polynomials.shape[1])
 
 
 def _pressed(force: Column) -> Rows:
     """Which rods bear forces distributed along them, of vectors (rods, 2)."""
-    found: Rows = np.flatnonzero((force[:, 0] != 0.0) | (force[:, 1] != 0.0))
-    return found
+    return np.flatnonzero((force[:, 0] != 0.0) | (force[:, 1] != 0.0))

@@ -42,6 +42,9 @@ MOST_ITERATIONS = 60  # for the axial force of a rod with plastic hinges
 UNBALANCED = 1e-13  # of the largest force, by the length of a rod: a moment that is round-off
 AT_LIMIT = 1e-10  # share of its strength within which a rod counts as yielding
 ROUND_OFF = float(np.finfo(np.float64).eps)
+SOFT = (
+    1e-12  # of the rods' stiffness at the same particle: a motion that is resisted less counts as not resisted
+)
 
 
 def largest(values: Array) -> float:
@@ -54,16 +57,14 @@ def normalised(motion: Array) -> Array:
     size = np.hypot(*motion[:, :2].T).max()
     if motion.shape[1] > 2 and size <= TURNS_ONLY * np.abs(motion[:, 2]).max():
         size = np.abs(motion[:, 2]).max()
-    scaled: Array = motion / size
-    return scaled
+    return motion / size
 
 
 def upright(motion: Array) -> Array:
     """A normalised motion (n, 2 or 3) or its opposite: that of which the largest part, if any a shift, is positive."""
     shifts = np.abs(motion[:, :2]).max() > 0.5
     part = np.abs(motion) * np.array([1.0, 1.0, 0.0 if shifts else 1.0])[: motion.shape[1]]
-    turned: Array = motion if motion.ravel()[part.argmax()] > 0.0 else -motion
-    return turned
+    return motion if motion.ravel()[part.argmax()] > 0.0 else -motion
 
 
 def of_axes(values: NDArray[Any]) -> NDArray[Any]:
@@ -441,8 +442,7 @@ class Structure:
 
     def turns(self, field: Array) -> Array:
         """The rotations at both ends of every rod, (rods, 2)."""
-        turns: Array = field[self.ends, 2]
-        return turns
+        return field[self.ends, 2]
 
     def move(self, vector: Array, response: Response) -> float:
         """The largest change of a rod, in length or direction relative to its reach, or of the slope of an end."""
@@ -555,7 +555,8 @@ class Structure:
         leaning = (axis * change[:, ::-1]).sum(axis=1) / np.where(
             response.length > 0.0, response.length, np.inf
         )
-        bent = self.bending.end_stiffness[:, ::2] * (turns + leaning[:, None]) ** 2
+        own, summed = self.bending.end_stiffness[:, ::2], self._turned_by(np.abs(field))
+        bent = own * ((turns + leaning[:, None]) ** 2 + ROUND_OFF / SOFT * summed**2)
         sprung = (self.springs * self.along_supports(field) ** 2).sum()
         return float((self.stiffness / self.rest_length) @ along**2 + bent.sum() + sprung)
 
@@ -763,8 +764,7 @@ class Structure:
     def _round_off_of_bows(self, displacement: Array, bent: Bent) -> Array:
         """What rounding of the rotations makes of the axial forces of rods that bow (kN)."""
         bows = (np.abs(bent.bowed) * np.abs(self.turns(displacement))).sum(axis=1)
-        round_off: Array = 4.0 * ROUND_OFF * self.stiffness / self.rest_length * bows
-        return round_off
+        return 4.0 * ROUND_OFF * self.stiffness / self.rest_length * bows
 
     def _stretch(self, change: Array) -> tuple[Array, Array, Array]:
         """Changes of length from the original ones, unit vectors and lengths of the rods.
@@ -838,8 +838,7 @@ class Structure:
     def _along(self, response: Response, soft: Flags) -> Array:
         """EA/L₀, of soft rods none, or what is left of it, (rods,)."""
         left = self.softening * (of_axes(response.elastic_force) < 0.0)
-        along: Array = np.where(of_axes(soft), left, 1.0) * (self.stiffness / self.rest_length)
-        return along
+        return np.where(of_axes(soft), left, 1.0) * (self.stiffness / self.rest_length)
 
     def _sheared(self, response: Response, pull: Array | float, moment: Array, shear: Array) -> Array:
         left = np.column_stack([-response.axis[:, 1], response.axis[:, 0]])
@@ -897,11 +896,17 @@ class Structure:
         """The residual (kN) that rounding of the displacements alone causes."""
         size = np.abs(self.gather(displacement))
         pulled = 2.0 * ROUND_OFF * self.greatest(self.weight * size)
-        return (
-            pulled
-            if response.bent is None
-            else max(pulled, largest(self._round_off_of_bows(displacement, response.bent)))
-        )
+        if self.bending is None or response.bent is None:
+            return pulled
+        bows = largest(self._round_off_of_bows(displacement, response.bent))
+        turned = self._turned_by(np.abs(displacement)) / self.rest_length[:, None]
+        return max(pulled, bows, 2.0 * ROUND_OFF * largest(self.bending.end_stiffness[:, ::2] * turned))
+
+    def _turned_by(self, sizes: Array) -> Array:
+        """What slopes of ends are sums of, without regard to signs, by the sizes of a field; (rods, 2)."""
+        length = np.where(self.original_length > 0.0, self.original_length, np.inf)
+        turned: Array = sizes[self.ends, 2] + (sizes[self.ends, :2].sum(axis=(1, 2)) / length)[:, None]
+        return turned
 
     # --- tangent -------------------------------------------------------------------------------------
 
@@ -1009,8 +1014,7 @@ class Structure:
     @property
     def scaled_compatibility(self) -> Array:
         """The compatibility matrix at the original positions in full, of lengths only: rotations are × their measure."""
-        matrix: Array = self.compatibility(self.unmoved).toarray() * self.reaches[:, None] / self.measure
-        return matrix
+        return self.compatibility(self.unmoved).toarray() * self.reaches[:, None] / self.measure
 
     def elongations(self, response: Response, rows: Rows) -> Array:
         """The elongations of some rods from the unknowns, in full, (k, N)."""
@@ -1028,8 +1032,7 @@ class Structure:
             return np.concatenate([-axis, axis], axis=1)
         zero = np.zeros((len(axis), 1))
         chord = np.concatenate([-axis, zero, axis, zero], axis=1)
-        found: Array = chord + (response.bent.bowed[:, :, None] * self._slopes_by_ends(response)).sum(axis=1)
-        return found
+        return chord + (response.bent.bowed[:, :, None] * self._slopes_by_ends(response)).sum(axis=1)
 
     def _slopes_by_ends(self, response: Response) -> Array:
         """Slopes of the ends from the coordinates of both, (rods, 2, 6)."""

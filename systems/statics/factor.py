@@ -15,14 +15,13 @@ import numpy as np
 
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.assembly import SYMMETRIC, Matrix
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Response, Structure
+from pinjoint.systems.statics.equations import ROUND_OFF, SOFT, Array, Flags, Response, Structure
 
 if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix
 
 HOLDS_LAPACK = "scipy.linalg._flapack"
 NO_STIFFNESS = 1e-13  # of the rods' stiffness at the same particle: round-off
-SOFT = 1e-12  # of the same: a motion that is resisted less counts as not resisted
 SURELY_HELD = 8e-9  # of the same: what is resisted by more loses no digits, by any measure of a motion
 SOFT_MODES = 8  # that are looked for at most
 HELD = 1e-9  # of the largest stiffness: a motion that is resisted less is not held
@@ -189,8 +188,7 @@ def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most
     if not np.isfinite(resisted).all():  # beyond the numbers that one can compute with
         return np.zeros((len(weight), 0))
     values, turn = np.linalg.eigh(resisted)
-    modes: Array = (block @ turn)[:, np.abs(values) < SOFT]
-    return modes
+    return (block @ turn)[:, np.abs(values) < SOFT]
 
 
 def unresisted(
@@ -211,5 +209,4 @@ def unresisted(
 def pseudo_random(size: int, count: int) -> Array:
     """Fixed vectors with a part in every direction, the same in every run."""
     numbers = np.arange(1, size * count + 1) * 0.6180339887498949
-    vectors: Array = (np.modf(numbers)[0] - 0.5).reshape(count, size).T.copy()
-    return vectors
+    return (np.modf(numbers)[0] - 0.5).reshape(count, size).T.copy()

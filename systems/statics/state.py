@@ -35,7 +35,8 @@ class StaticState:
     dissipated_plastic: since settling began. status: "equilibrium"; "neutral equilibrium" where nothing resists some
     motion, so that the place is one of many; "unstable equilibrium"; "mechanism", "collapse" or "limit reached", with
     which all values are those of the last equilibrium on the way. events: those on the way from the state before.
-    contacts: rows of the discs that press each other, (k, 2), with contact_force (k,).
+    contacts: rows of the discs that press each other, (k, 2), with contact_force (k,). acting: external forces (n, 2), where
+    members bend with moments (n, 3).
     """
 
     load_factor: float
@@ -59,6 +60,7 @@ class StaticState:
     events: tuple[Event, ...]
     contacts: Rows
     contact_force: Array
+    acting: Array
 
     @classmethod
     def of(
@@ -86,6 +88,7 @@ class StaticState:
         length = response.length
         if structure.first_order:  # response.length is that about which rods turn
             length = structure.original_length + response.elongation - structure.misfit
+        of_struts = _of_struts(model, response)
         return cls(
             displacement=displacement[:count, :2],
             rotation=structure.rotation(displacement)[:count],
@@ -99,7 +102,7 @@ class StaticState:
             reaction=reaction[:, :2],
             reaction_moment=structure.rotation(reaction),
             diagrams={
-                **_of_struts(model, response),
+                **of_struts,
                 **diagrams(
                     model,
                     response.axis[rods],
@@ -107,6 +110,7 @@ class StaticState:
                     structure.chords(displacement)[rods],
                     structure.rotation(displacement)[structure.ends[rods]],
                     (response.axial_force[rods], structure.end_moments(response)[rods]),
+                    of_struts.get("lateral_deflection"),
                     share=response.share,
                     first_order=structure.first_order,
                 ),
@@ -141,6 +145,12 @@ class StaticState:
         }
         found = {f"particles.{name}": values for name, values in of_particles.items()}
         return found | {f"rods.{name}": values for name, values in of_rods.items()}
+
+    @property
+    def shown(self) -> dict[str, NDArray[Any]]:
+        """The same, with what acts on particles."""
+        force, moment = self.acting[:, :2], self.acting[:, 2:].sum(axis=1)
+        return self.columns | {"particles.applied_force": force, "particles.applied_moment": moment}
 
     @property
     def permanent(self) -> Array:

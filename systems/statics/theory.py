@@ -13,6 +13,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import (
     ROUND_OFF,
+    SOFT,
     Array,
     Response,
     Structure,
@@ -23,7 +24,7 @@ from pinjoint.systems.statics.equations import (
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External, loose_bodies
-from pinjoint.systems.statics.factor import SOFT, SURELY_HELD, pseudo_random, regular, soft_modes, unresisted
+from pinjoint.systems.statics.factor import SURELY_HELD, pseudo_random, regular, soft_modes, unresisted
 from pinjoint.systems.statics.state import STABLE, Start, StaticState
 
 _REFINEMENTS = 4  # of a linear solution
@@ -207,6 +208,7 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
         moved,
         load,
         load_factor=factor,
+        acting=load,
         dissipated_plastic=0.0,
         residual=structure.largest(unbalanced) / forces if forces > 0.0 else 0.0,
         status=STABLE,
@@ -275,8 +277,7 @@ def self_stress(model: Model) -> Array:
         for _ in range(_REFINEMENTS):
             states = states - compatibility @ factor.solve(compatibility.T @ states)
     states = _localised(states)[: structure.deformations - int(structure.sprung.sum())]
-    scaled: Array = (states / np.abs(states).max(axis=0, initial=0.0)).T
-    return scaled
+    return (states / np.abs(states).max(axis=0, initial=0.0)).T
 
 
 def _rank(structure: Structure) -> int:
@@ -302,8 +303,7 @@ def _rigid(structure: Structure) -> Structure:
 
 def _tolerance(matrix: Array) -> float:
     """Of the largest singular value: smaller ones are round-off."""
-    least: float = 8.0 * max(matrix.shape) * ROUND_OFF
-    return least
+    return 8.0 * max(matrix.shape) * ROUND_OFF
 
 
 def _null_space(matrix: Array) -> Array:
@@ -312,8 +312,7 @@ def _null_space(matrix: Array) -> Array:
         return np.eye(matrix.shape[1])
     from scipy.linalg import null_space
 
-    space: Array = null_space(matrix, _tolerance(matrix))
-    return space
+    return null_space(matrix, _tolerance(matrix))
 
 
 def _localised(basis: Array) -> Array:
