@@ -93,7 +93,7 @@ class App:
         """
         fields = {field.name: field for field in fields_of(kind)}
         self._guard.checkers(fields.values())
-        others = [*KINDS, *EXTENSIONS.kinds.values()]
+        others: list[type[Handle]] = [*KINDS, *EXTENSIONS.kinds.values()]
         for part in ("table", "noun"):
             word = getattr(kind, part, "")
             if not word or word in [getattr(other, part) for other in others]:

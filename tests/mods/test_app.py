@@ -425,7 +425,7 @@ def test_a_scene_like_pause_has_its_keys_tools_and_clicks(write_mod: Write) -> N
     session.frame(0.01)
     assert session.scene == "play"
     session.click(0.5, 1.0)
-    assert [particle.name for particle in session.selected] == ["C"]
+    assert session.selected == [session.particles["C"]]
     session.drag((0.5, 1.0), (0.6, 1.0))
     assert session.particles["C"].position == (0.6, 1.0)
     session.point(2.0, 2.0)

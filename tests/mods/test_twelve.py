@@ -23,7 +23,7 @@ PULLED = FORMAT | {
 BALL = FORMAT | {"particles": [{"name": "A", "position": [0, 0], "mass": 1, "velocity": [1, 0]}]}
 
 
-def opened(write_mod: Write, name: str, code: str, document: Any) -> Session:
+def opened(write_mod: Write, name: str, code: str, document: Any) -> Any:
     """A session with a mod in which the check finds no problem."""
     (mod,) = mods.load([write_mod(name, f"from pinjoint.api import *\n{code}")])
     assert mod.problem == ""
@@ -229,7 +229,7 @@ def test_a_scene_as_in_pause(write_mod: Write) -> None:
     session.frame(1 / 60)
     session.click(1, 0)
     assert session.scene == "challenge"
-    assert [one.name for one in session.selected] == ["mass"]
+    assert session.selected == [session.particles["mass"]]
     assert session.view.status.hint == "1 of at most 3 rods"
     session.press("backspace")
     session.frame(1 / 60)
