@@ -152,7 +152,10 @@ def test_four_columns_buckle_under_eulers_loads() -> None:
 
 @pytest.mark.parametrize(
     ("name", "hinges"),
-    [("fixed_beam_collapse", {"A": 1.2, "C": 1.2, "B": 1.6}), ("portal_collapse", {"E": 0, "D": 0, "A": 0, "C": 1.5})],
+    [
+        ("fixed_beam_collapse", {"A": 1.2, "C": 1.2, "B": 1.6}),
+        ("portal_collapse", {"E": 0, "D": 0, "A": 0, "C": 1.5}),
+    ],
 )
 def test_plastic_hinges_form_by_the_formulas_of_the_descriptions(name: str, hinges: dict[str, float]) -> None:
     """12 and 16 M_p/L² of the beam of 10 kN/m; 6 M_p = λ (4 H + 3 V) of the portal; a factor of 0 is not asked for."""
@@ -171,7 +174,9 @@ def test_plastic_hinges_form_by_the_formulas_of_the_descriptions(name: str, hing
 
 
 @pytest.mark.parametrize(("push", "weight", "factor"), [(10.0, 80.0, 4 / (3 * 80)), (80.0, 40.0, 4 / (4 * 80))])
-def test_the_beam_or_the_sway_of_the_portal_may_collapse_alone(push: float, weight: float, factor: float) -> None:
+def test_the_beam_or_the_sway_of_the_portal_may_collapse_alone(
+    push: float, weight: float, factor: float
+) -> None:
     model = models.load("portal_collapse")
     model.loads["H"].force, model.loads["V"].force = (push, 0.0), (0.0, -weight)
     assert LimitLoad.of(model).factor == pytest.approx(70.0 * factor, rel=1e-9)
