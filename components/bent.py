@@ -105,14 +105,12 @@ class Axes:
         """Points at shares (k,) or (n, k), shape (n, k, 2)."""
         along = shares[..., None]
         chord = self.start[:, None] * (1.0 - along) + self.end[:, None] * along
-        found: Array = chord + self._away(self.bow, self.drift, shares)
-        return found
+        return chord + self._away(self.bow, self.drift, shares)
 
     def tangents(self, shares: Array) -> Array:
         """Their directions at shares (k,) or (n, k), not of unit length, shape (n, k, 2)."""
         drift = None if self.drift is None else self.drift.derivative
-        found: Array = (self.end - self.start)[:, None] + self._away(self.bow.derivative, drift, shares)
-        return found
+        return (self.end - self.start)[:, None] + self._away(self.bow.derivative, drift, shares)
 
     def _away(self, bow: Curves, drift: Curves | None, shares: Array) -> Array:
         found: Array = bow.at(shares)[..., None] * self.left[:, None]
@@ -127,8 +125,7 @@ class Axes:
         second = self.bow.derivative.derivative.most
         if self.drift is not None:
             second = second + self.drift.derivative.derivative.most
-        most: Array = np.sqrt(second / 8.0)
-        return most
+        return np.sqrt(second / 8.0)
 
     def pieces(self, rows: Rows, fineness: float) -> Lines | None:
         """These axes, of the rods in `rows`, cut into pieces flat within `fineness` (m); None where all look straight."""
@@ -193,10 +190,8 @@ class Station(NamedTuple):
         length = float((rods.original_length if model.first_order else rods.length)[row])
         at = np.array([min(distance / length, 1.0) if length > 0.0 else 0.0])
         forces = {name: float(inner_forces(model, rows, name).at(at)[0, 0]) for name in DIAGRAMS}
-        (start, end), (aside, slope) = (
-            model.particles.displacement[rods.between[row]],
-            deflected(model, row, at),
-        )
+        start, end = model.particles.displacement[rods.between[row]]
+        aside, slope = deflected(model, row, at)
         moved = start + at[0] * (end - start) + aside[0]
         rotation = chord_rotation(model)[row] + slope[0]
         return cls(float(at[0]) * length, forces, moved, float(rotation))
@@ -251,8 +246,7 @@ def _states(model: Model) -> tuple[_State, Kinks]:
         with np.errstate(invalid="ignore"):  # of rods whose ends are nowhere, which are not drawn
             found = _found(model)
         model.bent = model.revision, found
-    known: tuple[_State, Kinks] = found
-    return known
+    return found
 
 
 def _found(model: Model) -> tuple[_State, Kinks]:
@@ -339,11 +333,9 @@ def borne_between(model: Model, acting: Acting | None = None) -> Array:
 
     acting: combinations, whole, of which these follow one another; None: as much as acts in what the model shows.
     """
-    rods, count, between = (
-        model.rods,
-        1 if acting is None else len(acting.permanent),
-        Kinks.of(model, model.share if acting is None else 1.0, acting),
-    )
+    rods = model.rods
+    count = 1 if acting is None else len(acting.permanent)
+    between = Kinks.of(model, model.share if acting is None else 1.0, acting)
     found = np.zeros((count, model.particles.count, 2))
     if len(between.row):
         on_ends = between.on_ends(count * rods.count).reshape(count, -1, 2)

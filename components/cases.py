@@ -154,8 +154,7 @@ def permanent(world: World) -> float:
 
 def factor_of_each(world: World, table: str) -> NDArray[np.float64]:
     """The factor of each load of a table, (loads,)."""
-    every: NDArray[np.float64] = getattr(Acting.of(world), table)[0]
-    return every
+    return getattr(Acting.of(world), table)[0]
 
 
 def unknown_case(world: World) -> str:
@@ -187,8 +186,7 @@ def settled(world: World, acting: Acting | None = None) -> NDArray[np.float64]:
     found[..., 2] *= particles.fixed_rotation
     for moved in found:
         moved[:, :2] = of_rigid_supports(world, moved[:, :2])
-    every: NDArray[np.float64] = found.reshape(-1, 3)
-    return every
+    return found.reshape(-1, 3)
 
 
 def _settlements(world: World) -> NDArray[np.float64]:

@@ -73,10 +73,7 @@ def unforced(world: World, original: Column, rest: Column, acting: Acting) -> di
     misfit = (
         share * (original - rest * (1.0 + expansion * rods.temperature_change)) - rest * expansion * by_loads[0]
     )
-    return {
-        "misfit": misfit,
-        "free_curvature": -expansion * (share * rods.temperature_gradient + by_loads[1]),
-    }
+    return {"misfit": misfit, "free_curvature": -expansion * (share * rods.temperature_gradient + by_loads[1])}
 
 
 @derives(
@@ -169,8 +166,7 @@ def by_fixity(fixity: Column) -> tuple[Column, dict[str, Column]]:
 
 def initial_slopes(curvature: Column, length: Column, fixity: Column) -> Column:
     """Slopes of ends without moments of rods so curved (…, rods), by how firmly their ends are joined, (…, rods, 2)."""
-    found: Column = (0.5 * curvature * length)[..., None] * (fixity > 0.0) * [-1.0, 1.0] + 0.0
-    return found
+    return (0.5 * curvature * length)[..., None] * (fixity > 0.0) * [-1.0, 1.0] + 0.0
 
 
 def own_slopes(fixity: Column) -> Column:
@@ -181,8 +177,7 @@ def own_slopes(fixity: Column) -> Column:
     """
     start, end = fixity.T
     rows = [[start * (4.0 - end), 2.0 * (start - 1.0) * end], [2.0 * (end - 1.0) * start, end * (4.0 - start)]]
-    own: Column = np.moveaxis(np.array(rows), -1, 0) / (4.0 - start * end)[:, None, None]
-    return own
+    return np.moveaxis(np.array(rows), -1, 0) / (4.0 - start * end)[:, None, None]
 
 
 @derives("rods", "span_load", f"fixity {_BETWEEN}")
@@ -349,8 +344,7 @@ def chord_rotation(world: World) -> Column:
     difference = rods.difference
     sine = difference[:, 0] * relative[:, 1] - difference[:, 1] * relative[:, 0]
     if world.first_order:
-        small: Column = sine / np.maximum(rods.original_length, 1e-300) ** 2
-        return small
+        return sine / np.maximum(rods.original_length, 1e-300) ** 2
     chord = np.arctan2(sine, (difference * (difference + relative)).sum(axis=1))
     rotation = particles.rotation[rods.between] - rods.plastic_rotation
     return with_full_turns(chord, rods.turning_shares, rotation)
@@ -359,8 +353,7 @@ def chord_rotation(world: World) -> Column:
 def with_full_turns(chord: Column, turning_shares: Column, rotation: Column) -> Column:
     """Rotations of chords (rods,) with those full turns that bring them nearest to the mean of their rigid ends."""
     mean = (turning_shares * rotation).sum(axis=1)
-    turned: Column = chord + math.tau * np.rint((mean - chord) / math.tau)
-    return turned
+    return chord + math.tau * np.rint((mean - chord) / math.tau)
 
 
 @derives(
@@ -442,8 +435,7 @@ def all_slopes(rods: Table[Any], slopes: Column, load: Column) -> Column:
     warped = np.where(bent, -0.5 * rods.free_curvature * length, 0.0)
     free = np.array([1.0, -1.0]) * warped[:, None] + loaded / 3.0 - loaded[:, ::-1] / 6.0  # between hinges
     own = own_slopes(rods.fixity)
-    found: Column = np.einsum("rij,rj->ri", own, slopes) + np.einsum("rij,rj->ri", np.eye(2) - own, free)
-    return found
+    return np.einsum("rij,rj->ri", own, slopes) + np.einsum("rij,rj->ri", np.eye(2) - own, free)
 
 
 def cubic(start: Column, end: Column) -> Column:

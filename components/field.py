@@ -163,8 +163,7 @@ class Field(Generic[T]):
     def __get__(self, handle: Any, owner: type) -> Field[T] | T:
         if handle is None:
             return self
-        value: T = handle.world.read(handle, self)
-        return value
+        return handle.world.read(handle, self)
 
     def __set__(self, handle: Any, value: T | None) -> None:
         handle.world.assign([handle], self.name, [value])

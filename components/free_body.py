@@ -86,8 +86,7 @@ def _pulls(model: Model) -> tuple[Vectors, Vectors]:
 
 def _lengths(model: Model) -> Vectors:
     """The distances (m) between ends at which forces act on rods."""
-    found: Vectors = model.rods.original_length if model.first_order else model.rods.length
-    return found
+    return model.rods.original_length if model.first_order else model.rods.length
 
 
 def _of_bending(model: Model, along: Vectors) -> Vectors:

@@ -58,8 +58,7 @@ _SPOKEN = SimpleNamespace(code=ENGLISH, catalogue=gettext.NullTranslations())  #
 
 def language() -> str:
     """The code of the present language: "en"."""
-    code: str = _SPOKEN.code
-    return code
+    return _SPOKEN.code
 
 
 def speak(code: str) -> None:
@@ -103,8 +102,7 @@ def tr(message: str, /, **values: Any) -> str:
     A text that was said before is said anew.
     """
     if not message or isinstance(message, Said):  # of "" catalogues hold their own heading
-        anew: str = _anew(message)
-        return anew
+        return _anew(message)
     return Said(_filled(_SPOKEN.catalogue.gettext(message), values), tr, message, **values)
 
 

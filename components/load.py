@@ -186,8 +186,7 @@ class Load(Handle):
     @property
     def particle(self) -> Particle:
         """The particle it acts on."""
-        found: Particle = self.world.tables["particles"][self.on]
-        return found
+        return self.world.tables["particles"][self.on]
 
 
 class SpanLoad(Handle):

@@ -184,8 +184,7 @@ def supported(world: Store) -> NDArray[np.bool_]:
     """In which directions supports, rigid or elastic, act on particles: x, y and rotation, shape (particles, 3)."""
     particles = world.tables["particles"]
     rigid = np.column_stack([particles.fixed, particles.fixed_rotation])
-    found: NDArray[np.bool_] = rigid | (spring_stiffness(world) > 0.0)
-    return found
+    return rigid | (spring_stiffness(world) > 0.0)
 
 
 def turned_supports(world: Store) -> NDArray[np.bool_]:
@@ -250,5 +249,4 @@ def rods_without_length(world: Store, rows: NDArray[np.intp]) -> NDArray[np.intp
     """Those of these rods whose ends are at the same place and that have no rest length of their own."""
     ends = world.column("particles.position")[world.column("rods.between")[rows]]
     together = (ends[:, 0] == ends[:, 1]).all(axis=1)
-    without: NDArray[np.intp] = rows[together & np.isnan(world.column("rods.prescribed_rest_length")[rows])]
-    return without
+    return rows[together & np.isnan(world.column("rods.prescribed_rest_length")[rows])]

@@ -546,10 +546,7 @@ def euler_load(world: World) -> NDArray[np.float64]:
     """π² EI/L₀² of rods with EI that are hinged at both ends, infinite of others, (rods,)."""
     rods = world.tables["rods"]
     pinned = (rods.bending_stiffness > 0.0) & ~rods.fixity.any(axis=1) & ~rods.tension_only
-    load: NDArray[np.float64] = np.where(
-        pinned, math.pi**2 * rods.bending_stiffness / rods.rest_length**2, np.inf
-    )
-    return load
+    return np.where(pinned, math.pi**2 * rods.bending_stiffness / rods.rest_length**2, np.inf)
 
 
 def has_struts(world: World) -> bool:
@@ -565,8 +562,7 @@ def strut_energy(world: World) -> NDArray[np.float64]:
     buckled = force < -load
     beyond = np.where(buckled, force**2 - load**2, 0.0)
     load = np.where(buckled, load, 1.0)
-    energy: NDArray[np.float64] = rods.rest_length * beyond * (1.0 / load - 0.5 / rods.stiffness)
-    return energy
+    return rods.rest_length * beyond * (1.0 / load - 0.5 / rods.stiffness)
 
 
 def can_yield(world: World) -> bool:
@@ -616,8 +612,7 @@ def has_strength(world: World) -> bool:
 def bends_unchecked(world: World) -> NDArray[np.bool_]:
     """Of which rods utilisation leaves out the bending, for want of a section that knows its depth, (rods,)."""
     rods = world.tables["rods"]
-    found: NDArray[np.bool_] = (rods.turning_shares > 0.0).any(axis=1) & np.isnan(rods.section_modulus)
-    return found
+    return (rods.turning_shares > 0.0).any(axis=1) & np.isnan(rods.section_modulus)
 
 
 def thrust(world: World) -> NDArray[np.float64]:
@@ -625,8 +620,7 @@ def thrust(world: World) -> NDArray[np.float64]:
     rods = world.tables["rods"]
     pulled = rods.end_axial_force / rods.tension_limit[:, None]
     pressed = -rods.end_axial_force / rods.compression_limit[:, None]
-    found: NDArray[np.float64] = np.maximum(pulled, pressed).max(axis=1, initial=0.0)
-    return found
+    return np.maximum(pulled, pressed).max(axis=1, initial=0.0)
 
 
 def beside_thrust(share: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -666,5 +660,4 @@ def utilisation(world: World) -> NDArray[np.float64]:
     either = (
         np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit) | np.isfinite(rods.buckling_load)
     )
-    found: NDArray[np.float64] = np.where(either, np.maximum(np.maximum(pulled, pressed), 0.0), np.nan)
-    return found
+    return np.where(either, np.maximum(np.maximum(pulled, pressed), 0.0), np.nan)

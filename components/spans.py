@@ -31,8 +31,7 @@ _POWERS = 6  # coefficients of a deflection below a force that grows
 def _tail(place: Column, power: Rows) -> Column:
     """(1 − a)ⁿ/n!, 0 where n is negative."""
     known = np.maximum(power, 0)
-    found: Column = np.where(power < 0, 0.0, (1.0 - place) ** known / _FACTORIALS[known])
-    return found
+    return np.where(power < 0, 0.0, (1.0 - place) ** known / _FACTORIALS[known])
 
 
 def groups(first: Rows, last: Rows) -> tuple[Rows, Rows]:
@@ -409,17 +408,16 @@ def values(polynomials: Column, shares: Column) -> Column:
     """Values of polynomials (n, d) at shares (k,) or (n, k), shape (n, k)."""
     found = np.zeros((len(polynomials), np.shape(shares)[-1]))
     for coefficient in polynomials.T[::-1]:
-        found = found * shares + coefficient[:, None]
+        found *= shares
+        found += coefficient[:, None]
     return found
 
 
 def derivative(polynomials: Column) -> Column:
     """Of polynomials (n, d), by ξ, (n, d − 1)."""
-    found: Column = polynomials[:, 1:] * np.arange(1.0, polynomials.shape[1])
-    return found
+    return polynomials[:, 1:] * np.arange(1.0, polynomials.shape[1])
 
 
 def _pressed(force: Column) -> Rows:
     """Which rods bear forces distributed along them, of vectors (rods, 2)."""
-    found: Rows = np.flatnonzero((force[:, 0] != 0.0) | (force[:, 1] != 0.0))
-    return found
+    return np.flatnonzero((force[:, 0] != 0.0) | (force[:, 1] != 0.0))

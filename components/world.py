@@ -19,7 +19,7 @@ from pinjoint.components.field import MADE, Column, Field, FieldError, Role, sam
 from pinjoint.components.handle import Handle, set_entity
 from pinjoint.components.language import joined, tr
 from pinjoint.components.mistake import NotFound, WrongValue
-from pinjoint.components.table import Table, flags, grown
+from pinjoint.components.table import Table, flags, grown, table_of
 from pinjoint.components.wording import as_said, cut, missing
 
 H = TypeVar("H", bound=Handle)
@@ -101,7 +101,7 @@ class World:
         self._roots: dict[Derivation, tuple[Role, ...]] = {}
         weakref.finalize(self, _delete_context, self.context)
         for kind in kinds:
-            self.tables[kind.table] = Table(self, kind.table, kind)
+            self.tables[kind.table] = table_of(kind)(self, kind.table, kind)  # type: ignore[arg-type]
         for derivation in derivations:
             self.derive(derivation)
         for kind in kinds:
@@ -405,8 +405,7 @@ class World:
         with self.transaction(tr("new {noun}", noun=tr(kind.noun))):
             self.execute(Create(kind, count, kind.completed(checked, count)))
             kind.after_change(table, np.arange(table.count - count, table.count), table.fields)
-        handles: list[H] = table.handles[table.count - count :]
-        return handles
+        return table.handles[table.count - count :]
 
     def give(self, name: str, values: Column) -> None:
         """Execute the command that gives a whole column, named "table.field", computed values."""

@@ -167,7 +167,8 @@ def _sums(model: Model, place: Array, bowed: float, force: float, moment: float)
         (particles.applied_force, particles.applied_moment, bowed),
         (particles.reaction, particles.reaction_moment, 0.0),
     ):
-        turning = _cross(place - place[first : first + 1], forces) + np.where(turns, moments, 0.0)
+        (x, y), (across, up) = (place - place[first : first + 1]).T, forces.T
+        turning = x * up - y * across + np.where(turns, moments, 0.0)
         rows.append(np.column_stack([forces, turning])[used].sum(axis=0) + np.array([0.0, 0.0, more]))
     x, y, turning = np.array(rows).T
     columns = [
@@ -189,12 +190,6 @@ def _between(model: Model) -> float:
     slopes = rigid_slopes(rods, rotation[rods.between], chord_rotation(model))
     along = on_axis(rods.span_load, chord / np.maximum(rods.length, 1e-300)[:, None])[0]
     return couples - model.share * float((slopes * along).sum())
-
-
-def _cross(arm: Array, force: Array) -> Array:
-    """Moments (n,) of forces (n, 2)."""
-    moment: Array = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
-    return moment
 
 
 def _parts(

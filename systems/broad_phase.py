@@ -23,8 +23,7 @@ def nearest(line: Floats, span: Floats) -> Floats:
     across = (line[:, 0] * span[:, 1] - line[:, 1] * span[:, 0]) / long
     side = np.column_stack([across * span[:, 1], -across * span[:, 0]])
     end = line + np.where(along >= squared, 1.0, 0.0)[:, None] * span
-    found: Floats = np.where(((along > 0.0) & (along < squared))[:, None], side, end)
-    return found
+    return np.where(((along > 0.0) & (along < squared))[:, None], side, end)
 
 
 def gaps(
@@ -50,8 +49,7 @@ def distance_to_segments(points: Floats, start: Floats, end: Floats) -> Floats:
     share = -(x * along_x + y * along_y) / np.where(squared > 0.0, squared, 1.0)
     share = np.minimum(np.maximum(share, 0.0), 1.0)  # np.clip takes a multiple of the time for a few
     x, y = x + share * along_x, y + share * along_y
-    found: Floats = np.sqrt(x * x + y * y)  # np.hypot takes ten times as long for many
-    return found
+    return np.sqrt(x * x + y * y)  # np.hypot takes ten times as long for many
 
 
 def near_pairs(place: Floats, reach: Floats, obstacles: Obstacles = NO_OBSTACLES) -> Rows:
@@ -87,8 +85,7 @@ def _tree_pairs(place: Floats, reach: Floats) -> Rows:
             within = SEARCH_MARGIN * (reach[rows].max() + reach[others].max())
             pairs = tree.sparse_distance_matrix(finer, within, output_type="coo_matrix")
             found.append(np.sort(np.column_stack([rows[pairs.row], others[pairs.col]]), axis=1))
-    together: Rows = np.concatenate(found).T
-    return together
+    return np.concatenate(found).T
 
 
 def _near_obstacles(place: Floats, reach: Floats, obstacles: Obstacles) -> Rows:

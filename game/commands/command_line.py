@@ -55,8 +55,7 @@ def _of(module: str) -> Callable[[list[str]], int]:
     """What runs a command; its module is imported only for it."""
 
     def run(words: list[str]) -> int:
-        status: int = import_module(f"pinjoint.commands.{module}").command(words)
-        return status
+        return import_module(f"pinjoint.commands.{module}").command(words)
 
     return run
 

@@ -162,5 +162,4 @@ def _differs_from_default(field: Field[Any], column: Column) -> NDArray[np.bool_
     word = np.uint64 if default.nbytes % 8 == 0 else np.uint8
     default = default.view(word).ravel()
     bits = column.view(word).reshape(len(column), len(default))
-    differs: NDArray[np.bool_] = (bits != default).any(axis=1)
-    return differs
+    return (bits != default).any(axis=1)

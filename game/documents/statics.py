@@ -33,11 +33,9 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.limit_analysis import LimitLoad
     from pinjoint.systems.statics.second_order import SecondOrder
     from pinjoint.systems.statics.settle import Settlement
-    from pinjoint.systems.statics.state import StaticState
 
-PLASTIC = frozenset(
-    ("yield", "hinge", "buckling", "plastic mechanism", "collapse")
-)  # kinds of events beyond the elastic range
+# Kinds of events beyond the elastic range.
+PLASTIC = frozenset(("yield", "hinge", "buckling", "plastic mechanism", "collapse"))
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
 _MOST_COMPARED = 300  # rods, up to which both theories take a moment only
 REST = 0.2  # s without an edit, after which a window compares them
@@ -226,12 +224,18 @@ class Statics:
         factors = settings.load_steps if load_factors is None else load_factors
         return settle(model, factors, theory or settings.theory, Start.undeformed(model, self._permanent()))
 
-    def envelope(self, names: Sequence[str] = (), theory: str | None = None) -> Envelope:
-        """Bounds of what these combinations do, all there are if none is named, by a theory. Raises ValueError."""
+    def envelope(
+        self, names: Sequence[str] = (), theory: str | None = None, path: Sequence[str] = ()
+    ) -> Envelope:
+        """Bounds of what these combinations do, all there are if none is named, by a theory; or of what a force does that
+        moves along a path of rods. Raises ValueError.
+        """
         from pinjoint.systems.statics.envelope import Envelope
 
         model, settings = self._model, self._model.settings
         with model.own_state():
+            if path:
+                return Envelope.under_moving_force(model, path)
             return Envelope.of(model, names, theory or settings.theory, settings.load_steps, self._permanent())
 
     def second_order(self, elapsed: float | None = None) -> str:
@@ -316,18 +320,8 @@ class Statics:
             self._settlement, self.problem, self.motion = None, str(error), None
             self._columns = {}
             return
-        self._columns = self._shown(self._settlement.final)
+        self._columns = self._settlement.final.shown
         self.motion = last_motion(self._model, self._settlement)
-
-    def _shown(self, state: StaticState) -> Mapping[str, Column]:
-        """What columns show of a state, by "table.field"."""
-        from pinjoint.systems.statics.external import External
-
-        acting = External.of(self._model, self._model.settings.theory).at(state.load_factor)
-        return state.columns | {
-            "particles.applied_force": acting[:, :2],
-            "particles.applied_moment": acting[:, 2] if acting.shape[1] > 2 else np.zeros(len(acting)),
-        }
 
     def on_the_way(self, parts: int) -> Iterator[float]:
         """Let the model show the states on the way through the load steps, each in so many parts; yields load factors."""
@@ -338,9 +332,7 @@ class Statics:
         try:
             for state in self.settled(load_factors=factors).states:
                 if state.balanced:
-                    with model.own_state():
-                        columns = self._shown(state)
-                    model.show(Shown(columns, model.next_revision(), self.first_order, state.load_factor))
+                    model.show(Shown(state.shown, model.next_revision(), self.first_order, state.load_factor))
                     yield state.load_factor
         finally:
             model.show(outer)

@@ -42,8 +42,7 @@ def free_speeds(model: Model) -> Array:
     particles = model.particles
     free = np.logical_not(particles.fixed.all(axis=1) | nodes(model))
     mass = particles.mass[free]
-    speed: Array = np.hypot(*particles.velocity[free].T) * np.sqrt(mass / (mass.mean() if len(mass) else 1.0))
-    return speed
+    return np.hypot(*particles.velocity[free].T) * np.sqrt(mass / (mass.mean() if len(mass) else 1.0))
 
 
 def rayleigh(speed: Array, mean_square: float) -> Array:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 
 import numpy as np
 
-from pinjoint.components.field import Column
 from pinjoint.components.model import Model
 from pinjoint.components.particle import in_support_axes, supported, turned_supports
+from pinjoint.components.world import Shown
 from pinjoint.components.written import ROUNDING
 from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.external import External
@@ -29,16 +28,6 @@ _ACTING = {  # what loads, moves or strains a structure, by table
     ),
 }
 _STIFF = 1e9  # times the bending stiffness, so that what is drawn stays straight
-
-
-@dataclass(frozen=True)
-class _FirstOrder:
-    """Lets a copy show its state as first-order theory has it: forces act on the original geometry."""
-
-    columns: Mapping[str, Column] = field(default_factory=dict)
-    revision: int = 0
-    first_order: bool = True
-    share: float = 1.0
 
 
 def elastic_copy(model: Model) -> Model:
@@ -104,7 +93,7 @@ def still(copy: Model, whole: Model, state: SetState, *, moved: bool = False) ->
     rods = copy.rods
     if moved:
         copy.settings.original_diagrams = False
-        copy.show(_FirstOrder())
+        copy.show(Shown({}, 0, True, 1.0))  # as first-order theory has it: forces act on the original geometry
     here = [whole.rods[name].row for name in rods.names]
     copy.writable("particles.displacement")[...] = state.displacement if moved else 0.0
     copy.writable("particles.rotation")[...] = state.rotation if moved else 0.0
@@ -138,10 +127,8 @@ def exact_forces(model: Model, unknowns: Sequence[Unknown]) -> list[float] | Non
     final = settle(elastic_copy(model)).final
     if not final.balanced:
         return None
-    reaction, moment = (
-        in_support_axes(model, np.column_stack([final.reaction, final.reaction_moment])),
-        final.diagrams["bending_moment"],
-    )
+    reaction = in_support_axes(model, np.column_stack([final.reaction, final.reaction_moment]))
+    moment = final.diagrams["bending_moment"]
     return [
         float((final.axial_force if one.of_bar else moment if one.of_end else reaction)[one.place])
         for one in unknowns

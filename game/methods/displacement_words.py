@@ -10,7 +10,7 @@ from pinjoint.components.bent import AXIAL
 from pinjoint.components.language import marked, plural, tr
 from pinjoint.components.view import BETWEEN
 from pinjoint.methods import index
-from pinjoint.methods.words import EXACT, Caption
+from pinjoint.methods.words import EXACT, Caption, begun_captions
 
 if TYPE_CHECKING:  # they import scipy
     from pinjoint.methods.displacements import DisplacementGuide, DisplacementTables
@@ -50,11 +50,7 @@ def hint(guide: DisplacementGuide) -> str:
 
 def captions(guide: DisplacementGuide) -> list[Caption]:
     """The captions of the three sets: name, and load or displacements."""
-    there = len(guide.sets)
-    shown: list[Caption] = [
-        (tr(name), *(() if i < there else (tr(_TO_COME[i]) if _TO_COME[i] else "",)))
-        for i, name in enumerate(NAMES)
-    ]
+    there, shown = len(guide.sets), begun_captions(guide, NAMES, _TO_COME)
     for i in range(min(there, 2)):
         shown[i] = (*shown[i], tr("the real load"))
     if there > 2:
@@ -123,10 +119,7 @@ def working(guide: DisplacementGuide) -> tuple[str, ...]:
         )
     found = ",  ".join(amount(tables, i) for i in every)
     left = written.number(tables.unbalanced)
-    return (
-        found,
-        tr("Equilibrium of all joints: what is left to hold them is {force} kN.", force=left),
-    )
+    return (found, tr("Equilibrium of all joints: what is left to hold them is {force} kN.", force=left))
 
 
 def entry(tables: DisplacementTables, i: int, j: int) -> tuple[str, str, str]:

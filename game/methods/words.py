@@ -13,7 +13,7 @@ from pinjoint.components.view import BETWEEN
 from pinjoint.methods import PARTS, index
 
 if TYPE_CHECKING:  # they import scipy
-    from pinjoint.methods.guide import ForceGuide
+    from pinjoint.methods.guide import ForceGuide, Guide
     from pinjoint.methods.tables import ForceTables
     from pinjoint.systems.statics.force_method import Solution
     from pinjoint.systems.statics.unknowns import Unknown
@@ -69,11 +69,7 @@ def message(guide: ForceGuide) -> str:
 
 def hint(guide: ForceGuide) -> str:
     """The next possible step."""
-    steps = [
-        tr("I next of M, V, N") if guide.is_frame else tr("I forces"),
-        tr("Esc back"),
-        tr("C convention"),
-    ]
+    steps = [tr("I next of M, V, N") if guide.is_frame else tr("I forces"), tr("Esc back"), tr("C convention")]
     if guide.part == 2 and guide.axis_wanted is not None:
         steps = [tr("X horizontal"), tr("Y vertical")]
         if guide.clamp_wanted:
@@ -97,11 +93,7 @@ def captions(guide: ForceGuide) -> list[Caption]:
     """The captions of the three sets: name, load, and displacements once they are measured."""
     if guide.mechanism is not None:
         return [(tr(NAMES[0]),), (tr("A mechanism: nothing resists this motion"),), ("",)]
-    there = len(guide.sets)
-    shown: list[Caption] = [
-        (tr(name), *(() if i < there else (tr(_TO_COME[i]) if _TO_COME[i] else "",)))
-        for i, name in enumerate(NAMES)
-    ]
+    there, shown = len(guide.sets), begun_captions(guide, NAMES, _TO_COME)
     solution = guide.solution
     if solution is None or guide.part == 2:
         return shown
@@ -112,6 +104,15 @@ def captions(guide: ForceGuide) -> list[Caption]:
         )
         shown[i] = (*shown[i], *load, *(measured[i] if opened else ()))
     return shown
+
+
+def begun_captions(guide: Guide, names: Sequence[str], to_come: Sequence[str]) -> list[Caption]:
+    """The names of the three sets of a method, and in which part those follow that are not there yet."""
+    there = len(guide.sets)
+    return [
+        (tr(name),) if i < there else (tr(name), tr(follows))
+        for i, (name, follows) in enumerate(zip(names, to_come, strict=True))
+    ]
 
 
 def _of_textbook(guide: ForceGuide, solution: Solution) -> tuple[Caption, ...]:

@@ -105,8 +105,7 @@ class Results:
         ]
         made = pyarrow.BufferOutputStream()
         parquet.write_table(pyarrow.table(arrays, schema=pyarrow.schema(fields)), made)
-        content: bytes = made.getvalue().to_pybytes()
-        return content
+        return made.getvalue().to_pybytes()
 
     # --- a picture ---------------------------------------------------------------------------------------
 

@@ -44,8 +44,7 @@ def overlaps(place: Floats, radius: Floats, others: Obstacles = NO_OBSTACLES) ->
     """Pairs of discs, and of discs and obstacles, that overlap, shape (k, 2)."""
     pairs = near_pairs(place, radius, others)
     reach = np.concatenate([radius, others.radius])[pairs].sum(axis=1)
-    overlapping: Rows = pairs[gaps(place, radius, pairs, others)[0] < -SLACK * reach]
-    return overlapping
+    return pairs[gaps(place, radius, pairs, others)[0] < -SLACK * reach]
 
 
 def part(

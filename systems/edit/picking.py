@@ -34,8 +34,7 @@ class Grip:
     @property
     def place(self) -> Vector:
         """The place of the point (m)."""
-        place: Vector = getattr(self.element, self.point)
-        return place
+        return getattr(self.element, self.point)
 
 
 def pick_end(model: Model, view: View, pixel: Vector) -> tuple[Rod, int] | None:

@@ -140,8 +140,7 @@ class Movable:
 
 def rows_of(model: Model, handles: Sequence[Handle]) -> NDArray[np.int64]:
     """Rows of existing elements of one kind, each in its table."""
-    rows: NDArray[np.int64] = model.row_of_entity[[handle.entity for handle in handles]]
-    return rows
+    return model.row_of_entity[[handle.entity for handle in handles]]
 
 
 def nudged(model: Model, view: View, positions: ArrayLike, direction: Vector, *, far: bool) -> Points:
@@ -154,5 +153,4 @@ def nudged(model: Model, view: View, positions: ArrayLike, direction: Vector, *,
         shown = np.flatnonzero(model.grids.shown)
         step = model.grids.spacing[shown[-1]] if len(shown) else 10.0 * step
     moved = np.asarray(positions) + np.multiply(direction, step)
-    tidy: Points = np.array([float(f"{value:.12g}") for value in moved.ravel()]).reshape(moved.shape)
-    return tidy
+    return np.array([float(f"{value:.12g}") for value in moved.ravel()]).reshape(moved.shape)

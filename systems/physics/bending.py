@@ -25,8 +25,7 @@ def bending_energy(model: Model) -> Array:
     """½ (φ − φ⁰)ᵀ K (φ − φ⁰) of every rod (kN·m)."""
     start, end = (slopes(model) - model.rods.initial_slopes).T
     of_start, mixed, of_end = model.rods.end_stiffness.T
-    energy: Array = 0.5 * (of_start * start**2 + of_end * end**2) + mixed * start * end
-    return energy
+    return 0.5 * (of_start * start**2 + of_end * end**2) + mixed * start * end
 
 
 def bowing_work(model: Model) -> Array:
@@ -36,8 +35,7 @@ def bowing_work(model: Model) -> Array:
     present = rods.difference + model.particles.displacement[second] - model.particles.displacement[first]
     length = np.hypot(present[:, 0], present[:, 1])
     across = on_axis(rods.span_load, present / np.where(length > 0.0, length, 1.0)[:, None])[1]
-    work: Array = (across * slopes(model)).sum(axis=1) + rods.span_load[:, 6] * chord_rotation(model)
-    return work
+    return (across * slopes(model)).sum(axis=1) + rods.span_load[:, 6] * chord_rotation(model)
 
 
 def levers(model: Model) -> Array:

@@ -152,8 +152,7 @@ def _solved_sparsely(model: Model, free: NDArray[np.intp], force: Array) -> Arra
     elongations = elongations[:, free]
     matrix = elongations.T @ elongations.multiply(stiffness[:, None]).tocsc()
     held = matrix + _SLIGHTLY * stiffness.max() * identity(len(free), format="csc")
-    solved: Array = splu(csc_matrix(held)).solve(force)
-    return solved
+    return splu(csc_matrix(held)).solve(force)
 
 
 def _flight_pace(model: Model, moving: bool) -> float:

@@ -84,8 +84,7 @@ class RestMeasure:
         still_energy = REST_RESIDUAL**2 * np.maximum(elastic, least)
         residual = _largest(count, (of_particle, self.residual))
         kinetic = np.bincount(of_particle, self.kinetic, count)
-        rest: Mask = (residual <= still_force) & (kinetic <= still_energy)
-        return rest
+        return (residual <= still_force) & (kinetic <= still_energy)
 
     def measures(self, model: Model, particles: Mask, rods: Mask) -> Array:
         """The measures of these particles and rods at rest, shape (8,)."""

@@ -47,10 +47,8 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
 }
 PROVIDED = {name for names in PROVIDED_TO.values() for name in names}
 TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
-TURNING = {
-    "particles_rotation": "displacement",
-    "particles_angular_velocity": "velocity",
-}  # of models that bend
+# Of models that bend.
+TURNING = {"particles_rotation": "displacement", "particles_angular_velocity": "velocity"}
 
 KERNELS = ("kernel", "branch", "margin", "potential")  # of a system, as its attributes
 
@@ -381,8 +379,7 @@ def _check_role(system: StepSystem, model: Model) -> None:
 def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., Any]:
     """The function that "module:function" names, or the function itself. Raises ProgramError, which names the owner."""
     if not isinstance(kernel, str):
-        found: Callable[..., Any] = getattr(kernel, "__func__", kernel)  # of a class: a method
-        return found
+        return getattr(kernel, "__func__", kernel)  # of a class: a method
     module, _, attribute = kernel.partition(":")
     try:
         found = getattr(importlib.import_module(module), attribute)

@@ -241,8 +241,7 @@ class _Rewriting(ast.NodeTransformer):
         read = copy.deepcopy(node.target)
         read.ctx = ast.Load()
         assigned = ast.Assign([node.target], ast.BinOp(read, node.op, node.value))
-        rewritten: ast.stmt = self.visit(ast.fix_missing_locations(ast.copy_location(assigned, node)))
-        return rewritten
+        return self.visit(ast.fix_missing_locations(ast.copy_location(assigned, node)))
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
         called = self._value(node.func)
@@ -374,7 +373,7 @@ def _rewritten_in_lists(plain: Any) -> Interpreted:
         scope[name] = _in_scope(value, name, scope)
     made: Any = scope[node.name]
     made.__defaults__ = plain.__defaults__
-    return made  # type: ignore[no-any-return]
+    return made
 
 
 def _in_scope(value: Any, name: str, scope: dict[str, Any]) -> Any:

@@ -301,8 +301,7 @@ class Program:
     @property
     def unbalanced_moment(self) -> Column:
         """The same of moments on each particle (kN·m), shape (n,); none where nothing bends."""
-        moment: Column = self._arm * self._unbalanced[:, 2:].sum(axis=1)
-        return moment
+        return self._arm * self._unbalanced[:, 2:].sum(axis=1)
 
     def _rows(self, table: str) -> int:
         """Number of elements of a table that the program holds."""

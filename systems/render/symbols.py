@@ -124,8 +124,7 @@ def arc(centre: Points, radius: float, middle: Points, reach: float) -> Points:
     half = math.pi if 2.0 * reach >= radius else 1.1 * math.asin(2.0 * reach / radius)
     angle = np.linspace(-half, half, max(12, math.ceil(half / math.pi * 16.0 * math.sqrt(radius))))[:, None]
     along, down = radius * np.sin(angle), 2.0 * radius * np.sin(0.5 * angle) ** 2
-    found: Points = middle - (distance - radius + down) * out + along * [-out[1], out[0]]
-    return found
+    return middle - (distance - radius + down) * out + along * [-out[1], out[0]]
 
 
 def _bar(left: float, top: float, right: float, bottom: float) -> Points:

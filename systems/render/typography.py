@@ -19,8 +19,7 @@ WEIGHTS = {"regular": "Inter-Regular.otf", "semibold": "Inter-SemiBold.otf"}
 @cache
 def _metrics() -> dict[str, Any]:
     text = (files("pinjoint.assets") / "fonts" / "metrics.json").read_text(encoding="utf-8")
-    loaded: dict[str, Any] = json.loads(text)
-    return loaded
+    return json.loads(text)
 
 
 @lru_cache(maxsize=8192)

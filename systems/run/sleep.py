@@ -108,8 +108,7 @@ class Sleep:
     def _under_varying_loads(self) -> Rows:
         """The islands on which loads act that still vary."""
         varies = np.array(load_ends(self.model)) > self.model.clock.time
-        islands_of_loads: Rows = self._of_particle[self.model.loads.on[varies]]
-        return islands_of_loads
+        return self._of_particle[self.model.loads.on[varies]]
 
     def _let_sleep(self, asleep: Mask, kinetic: Array) -> bool:
         """Let these particles sleep, and no others. kinetic: their energy (J), which they lose."""

@@ -92,8 +92,7 @@ class Bending:
         """What moments (rods, 2) at hinges leave at the other ends while these do not turn, (rods, 2)."""
         stiff, mixed = self._of_ends, self.end_stiffness[:, 1:2]
         share = np.divide(mixed, stiff, where=hinges & (stiff != 0.0), out=np.zeros_like(stiff))
-        over: Array = np.where(hinges, 0.0, (share * moment)[:, ::-1])
-        return over
+        return np.where(hinges, 0.0, (share * moment)[:, ::-1])
 
     def hinged(self, hinges: Flags) -> Bending:
         """The same with hinges at some rigid ends, (rods, 2), at which slopes are still those of the joints."""
@@ -137,8 +136,7 @@ class Bending:
     def energy(self, slopes: Array) -> Array:
         """½ (φ − φ⁰)ᵀ K (φ − φ⁰) of every rod (kN·m)."""
         bend = slopes - self.initial_slopes
-        energy: Array = 0.5 * (bend * _product(self.end_stiffness, bend)).sum(axis=1)
-        return energy
+        return 0.5 * (bend * _product(self.end_stiffness, bend)).sum(axis=1)
 
     # --- plastic hinges ------------------------------------------------------------------------------
 
@@ -224,8 +222,7 @@ class Bending:
         way[:, 0, 3:5], way[:, 1, 3], way[:, 1, 4] = axis, -axis[:, 1], axis[:, 0]
         way[:, :2, :2] = -way[:, :2, 3:5]
         way[:, 2, 2] = way[:, 3, 5] = 1.0
-        found: Array = way.swapaxes(1, 2) @ block @ way
-        return found
+        return way.swapaxes(1, 2) @ block @ way
 
 
 def needed_parts(model: Model, axial_force: Array, slopes: Array | None = None) -> NDArray[np.intp]:
@@ -255,14 +252,12 @@ def flows(stiffness: Array, excess: Array, flowing: Flags) -> Array:
     own = np.where(flowing, own, 1.0)[:, :, None]
     given = np.where(flowing[:, :, None], excess.reshape(*flowing.shape, -1), 0.0)
     across = own[:, ::-1] * given - mixed * given[:, ::-1]
-    found: Array = (across / (own[:, :1] * own[:, 1:] - mixed * mixed)).reshape(excess.shape)
-    return found
+    return (across / (own[:, :1] * own[:, 1:] - mixed * mixed)).reshape(excess.shape)
 
 
 def at_limits(sense: Array, limit: Array) -> Array:
     """The moments of ends that flow in these senses, 1 or −1; 0 of others."""
-    edge: Array = sense * np.where(sense != 0.0, limit, 0.0)
-    return edge
+    return sense * np.where(sense != 0.0, limit, 0.0)
 
 
 def yielding(stiffness: Array, moment: Array, limit: Array) -> Array:

@@ -36,9 +36,8 @@ from pinjoint.systems.statics.theory import FULL, linear
 RESTARTS = 100
 LANCZOS = 40  # vectors that the lowest of larger structures are found from, at least
 MODES = 5
-IDLE = (
-    1e-6  # of the work of compression on the member that does most: those that do less take no part in a mode
-)
+# Of the work of compression on the member that does most: those that do less take no part in a mode.
+IDLE = 1e-6
 IN_LINE = 1e-6  # sine of the angle between rods, and share of their bending stiffness
 NOTHING = 1e-10  # of the largest axial force, or of the largest eigenvalue: round-off
 # Of the rods' stiffness: by what tension is to hold a mechanism before it gives way.
@@ -228,8 +227,7 @@ def _modes(structure: Structure, stiffness: Matrix, softening: Matrix, count: in
             )
             raise NoEquilibrium("collapse", message) from None
     order = np.argsort(-values)[:count]
-    found: Array = vectors[:, order[values[order] > NOTHING * np.abs(values).max(initial=0.0)]]
-    return found
+    return vectors[:, order[values[order] > NOTHING * np.abs(values).max(initial=0.0)]]
 
 
 def _every(weight: Array, one: Matrix, other: Matrix, count: int) -> tuple[Array, Array]:
@@ -283,8 +281,7 @@ def _work(structure: Structure, rods: Response, mode: Array, compression: Array)
     nearer = 0.5 * aside**2 / np.where(rods.length > 0.0, rods.length, np.inf)
     if structure.bending is not None:
         nearer += structure.bending.bow(structure.slope_rates(mode, rods))[1]
-    work: Array = compression * nearer
-    return work
+    return compression * nearer
 
 
 def members(model: Model) -> Rows:
@@ -310,8 +307,7 @@ def _effective_length(model: Model, axial_force: Array) -> Array:
     ratio = np.divide(
         model.rods.bending_stiffness, -axial_force, out=np.full(len(axial_force), np.nan), where=pressed
     )
-    found: Array = np.pi * np.sqrt(ratio)
-    return found
+    return np.pi * np.sqrt(ratio)
 
 
 def _why_none(model: Model, live: Array, *, stiffens: bool) -> str:

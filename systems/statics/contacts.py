@@ -22,9 +22,8 @@ from pinjoint.systems.statics.relax import BALANCED, creep, has_run_away
 CONTACT_STRAIN = 1e-3  # of a contact under the largest load, before it is lengthened
 SHORTEST_MOVE = 0.25  # of its radius: the travel of a disc in a step, whatever is near
 LONGEST_MOVE = 0.45  # of its distance from the nearest other: the same elsewhere
-TOUCHING = (
-    1e-12  # of the sum of radii, or of a side: a gap, an overlap or a distance from its end that is round-off
-)
+# Of the sum of radii, or of a side: a gap, an overlap or a distance from its end that is round-off.
+TOUCHING = 1e-12
 NEARLY_TOUCHING = 1e-9  # the same, where lengthening no longer lessens it
 MOST_PAIRS = 10**6  # between which distances are measured; above, nodes of structures move SHORTEST_MOVE
 STIFF = 1e-4  # overlap, of the sum of radii, below which contacts need not become stiffer
@@ -114,14 +113,12 @@ class Discs:
 
     def gap(self, displacement: Array, pairs: Rows) -> Array:
         """Distances (k,) between the rims of pairs (k, 2), negative where they overlap."""
-        gap: Array = np.hypot(*self.lines(displacement, pairs).T) - self.radius[pairs].sum(axis=1)
-        return gap
+        return np.hypot(*self.lines(displacement, pairs).T) - self.radius[pairs].sum(axis=1)
 
     def touching(self, displacement: Array) -> Rows:
         """Pairs (k, 2) that overlap by more than round-off."""
         pairs = self.near(displacement, np.zeros(len(self.radius)))
-        overlapping: Rows = pairs[self.gap(displacement, pairs) < -TOUCHING * self.radius[pairs].sum(axis=1)]
-        return overlapping
+        return pairs[self.gap(displacement, pairs) < -TOUCHING * self.radius[pairs].sum(axis=1)]
 
     def moves(self, displacement: Array) -> Array:
         """The distance (m) that each body may move, (N,), before the next search for contacts."""
@@ -318,5 +315,4 @@ class Sinking:
 
 def _travel(displacement: Array, start: Array) -> Array:
     """How far each body has moved between two fields of displacements (m), (N,)."""
-    far: Array = np.hypot(*(displacement - start)[:, :2].T)
-    return far
+    return np.hypot(*(displacement - start)[:, :2].T)

@@ -18,13 +18,12 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import qr
 
-from pinjoint.components.cases import settled
 from pinjoint.components.model import Model
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import Array, Flags, Structure
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.force_method import real_structure
-from pinjoint.systems.statics.superposition import ROUNDING, SetState, Superposition
+from pinjoint.systems.statics.superposition import ROUNDING, SetState, Superposition, settled_supports
 from pinjoint.systems.statics.theory import FirstOrder
 from pinjoint.systems.statics.unknowns import MethodError, Unknown
 
@@ -83,14 +82,12 @@ def solve(model: Model) -> Solution:
     real_theory, real = real_structure(model)
     held = replace(whole, fixed=whole.fixed | independent, unknown=whole.unknown & ~independent)
     theory = FirstOrder(model, held)
-    places = settled(model)
-    supports = whole.of_supports(whole.field(places[:, :2], places[:, 2]))
-    nothing: Array = np.zeros(supports.shape)
+    nothing: Array = np.zeros(whole.fixed.shape)
     at = tuple(np.argwhere(independent).T)
     units = np.zeros((count, *nothing.shape))
     units[(np.arange(count), *at)] = 1.0
-    base = _state(model, theory, External.of(model).at(1.0), supports, 1.0)
-    alone = tuple(_state(model, theory, nothing, whole.along_axes(unit), 0.0) for unit in units)
+    base = SetState.solved(theory, External.of(model).at(1.0), settled_supports(model, whole), 1.0)
+    alone = tuple(SetState.solved(theory, nothing, whole.along_axes(unit), 0.0) for unit in units)
     firm = np.isin(np.arange(len(whole.ends)), whole.inextensible)
     members = replace(whole, stiffness=np.where(firm, 0.0, whole.stiffness)).stiffnesses
     fields = np.array([whole.along_supports(whole.field(one.displacement, one.rotation)) for one in alone])
@@ -122,10 +119,3 @@ def _independent(whole: Structure) -> Flags:
         rank = int((np.abs(np.diag(factor)) > _LEAST).sum())
         found.ravel()[whole.index[order[:rank]]] = False
     return found
-
-
-def _state(model: Model, theory: FirstOrder, load: Array, moved: Array, share: float) -> SetState:
-    """That of the held structure displaced so (n, …), under a load (n, …) and a share of what acts without one."""
-    rods, strain = theory.structure.grown(share), share * model.rods.plastic_strain
-    place, response = theory.equilibrium(load, moved, strain, share, rods)
-    return SetState.of(model, rods, load, place, response, np.zeros(rods.ends.shape))

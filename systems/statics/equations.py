@@ -54,16 +54,14 @@ def normalised(motion: Array) -> Array:
     size = np.hypot(*motion[:, :2].T).max()
     if motion.shape[1] > 2 and size <= TURNS_ONLY * np.abs(motion[:, 2]).max():
         size = np.abs(motion[:, 2]).max()
-    scaled: Array = motion / size
-    return scaled
+    return motion / size
 
 
 def upright(motion: Array) -> Array:
     """A normalised motion (n, 2 or 3) or its opposite: that of which the largest part, if any a shift, is positive."""
     shifts = np.abs(motion[:, :2]).max() > 0.5
     part = np.abs(motion) * np.array([1.0, 1.0, 0.0 if shifts else 1.0])[: motion.shape[1]]
-    turned: Array = motion if motion.ravel()[part.argmax()] > 0.0 else -motion
-    return turned
+    return motion if motion.ravel()[part.argmax()] > 0.0 else -motion
 
 
 def of_axes(values: NDArray[Any]) -> NDArray[Any]:
@@ -441,8 +439,7 @@ class Structure:
 
     def turns(self, field: Array) -> Array:
         """The rotations at both ends of every rod, (rods, 2)."""
-        turns: Array = field[self.ends, 2]
-        return turns
+        return field[self.ends, 2]
 
     def move(self, vector: Array, response: Response) -> float:
         """The largest change of a rod, in length or direction relative to its reach, or of the slope of an end."""
@@ -763,8 +760,7 @@ class Structure:
     def _round_off_of_bows(self, displacement: Array, bent: Bent) -> Array:
         """What rounding of the rotations makes of the axial forces of rods that bow (kN)."""
         bows = (np.abs(bent.bowed) * np.abs(self.turns(displacement))).sum(axis=1)
-        round_off: Array = 4.0 * ROUND_OFF * self.stiffness / self.rest_length * bows
-        return round_off
+        return 4.0 * ROUND_OFF * self.stiffness / self.rest_length * bows
 
     def _stretch(self, change: Array) -> tuple[Array, Array, Array]:
         """Changes of length from the original ones, unit vectors and lengths of the rods.
@@ -838,8 +834,7 @@ class Structure:
     def _along(self, response: Response, soft: Flags) -> Array:
         """EA/L₀, of soft rods none, or what is left of it, (rods,)."""
         left = self.softening * (of_axes(response.elastic_force) < 0.0)
-        along: Array = np.where(of_axes(soft), left, 1.0) * (self.stiffness / self.rest_length)
-        return along
+        return np.where(of_axes(soft), left, 1.0) * (self.stiffness / self.rest_length)
 
     def _sheared(self, response: Response, pull: Array | float, moment: Array, shear: Array) -> Array:
         left = np.column_stack([-response.axis[:, 1], response.axis[:, 0]])
@@ -1009,8 +1004,7 @@ class Structure:
     @property
     def scaled_compatibility(self) -> Array:
         """The compatibility matrix at the original positions in full, of lengths only: rotations are × their measure."""
-        matrix: Array = self.compatibility(self.unmoved).toarray() * self.reaches[:, None] / self.measure
-        return matrix
+        return self.compatibility(self.unmoved).toarray() * self.reaches[:, None] / self.measure
 
     def elongations(self, response: Response, rows: Rows) -> Array:
         """The elongations of some rods from the unknowns, in full, (k, N)."""
@@ -1028,8 +1022,7 @@ class Structure:
             return np.concatenate([-axis, axis], axis=1)
         zero = np.zeros((len(axis), 1))
         chord = np.concatenate([-axis, zero, axis, zero], axis=1)
-        found: Array = chord + (response.bent.bowed[:, :, None] * self._slopes_by_ends(response)).sum(axis=1)
-        return found
+        return chord + (response.bent.bowed[:, :, None] * self._slopes_by_ends(response)).sum(axis=1)
 
     def _slopes_by_ends(self, response: Response) -> Array:
         """Slopes of the ends from the coordinates of both, (rods, 2, 6)."""

@@ -189,8 +189,7 @@ def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most
     if not np.isfinite(resisted).all():  # beyond the numbers that one can compute with
         return np.zeros((len(weight), 0))
     values, turn = np.linalg.eigh(resisted)
-    modes: Array = (block @ turn)[:, np.abs(values) < SOFT]
-    return modes
+    return (block @ turn)[:, np.abs(values) < SOFT]
 
 
 def unresisted(
@@ -211,5 +210,4 @@ def unresisted(
 def pseudo_random(size: int, count: int) -> Array:
     """Fixed vectors with a part in every direction, the same in every run."""
     numbers = np.arange(1, size * count + 1) * 0.6180339887498949
-    vectors: Array = (np.modf(numbers)[0] - 0.5).reshape(count, size).T.copy()
-    return vectors
+    return (np.modf(numbers)[0] - 0.5).reshape(count, size).T.copy()

@@ -39,9 +39,8 @@ CONVERGED = 1e-11  # of the largest force: a smaller residual that falls no more
 EXACT_EVENTS = 500  # rods up to which every yield ends an increment; larger: slower, answers as exact
 HALF = 0.5  # share of an increment to try after it failed
 RESOLUTION = 1 / 8  # of the change of load, to which yields are told apart in larger structures
-MOST_SHARES = (
-    20  # trials after which an increment is halved each time, where round-off hides the end of a piece
-)
+# Trials after which an increment is halved each time, where round-off hides the end of a piece.
+MOST_SHARES = 20
 LEAST_SHARE = 0.01  # of an increment to try next where a rod leaves its piece sooner
 REVERSAL = 1e-5  # increment to which the end of yielding is located; the error goes with its square
 SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
@@ -51,9 +50,8 @@ CONFIRMING = range(12, 28)
 FARTHER = 8.0  # times the way between two states on a path: they are on two if they are that far apart
 FEW_NARROWINGS = 14  # the same in structures larger than EXACT_EVENTS
 ACTIVE_SET_ROUNDS = 12
-WAYS = (
-    1e-12  # weight of ways beside elongations, in energy, where directions are compared: ways decide below 1e-6
-)
+# Weight of ways beside elongations, in energy, where directions are compared: ways decide below 1e-6.
+WAYS = 1e-12
 TIED = 1e-8  # of the same where ends yield, of which those at one joint may change their moments by round-off alone
 INDIFFERENT = 1e-11  # of the largest rate of elongation: a smaller one is round-off
 
@@ -172,7 +170,8 @@ class Path:
     def start(self, displacement: Array, plastic_strain: Array) -> Point:
         """The point at t = 0 in this state; rods beyond a strength yield at once."""
         plastic_strain = self.structure.yielding_parts(plastic_strain)
-        response = self.respond(displacement, plastic_strain, 0.0)
+        moved = displacement.any() or plastic_strain.any() or self.share(0.0)
+        response = self.respond(displacement, plastic_strain, 0.0) if moved else self.structure.unmoved
         if response.flowing.any():
             response = self.respond(displacement, response.plastic_strain, 0.0)
         return Point(displacement, response.plastic_strain, 0.0, response, 0.0)
@@ -222,10 +221,8 @@ class Path:
         """Of all directions, with a growing or a falling load, the one most like the last."""
         elastic = self._direction(response, branches, np.zeros_like(guess), onward)
         limited, matrix, growth = self._limits(response, branches, elastic)
-        best, likeness = (
-            replace(self._direction(response, branches, guess, onward), consistent=False),
-            -math.inf,
-        )
+        best = replace(self._direction(response, branches, guess, onward), consistent=False)
+        likeness = -math.inf
         for sense in (1.0, -1.0):
             for chosen in yielding_sets(matrix, sense * elastic.sense * growth, guess[limited]):
                 giving = self._giving(limited, matrix, sense * elastic.sense * growth, chosen)

@@ -35,7 +35,7 @@ from pinjoint.systems.statics.equations import Array, Rows, Structure, normalise
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External
-from pinjoint.systems.statics.superposition import ROUNDING, SetState, Superposition
+from pinjoint.systems.statics.superposition import ROUNDING, SetState, Superposition, settled_supports
 from pinjoint.systems.statics.theory import FirstOrder
 from pinjoint.systems.statics.unknowns import MethodError, Unknown
 
@@ -57,8 +57,7 @@ class Terms:
 
     def of_units(self, i: int, j: int) -> Array:
         """n n' L/EA or ∫ m m' dx/EI of two unknowns (rods,)."""
-        terms: Array = self.softness * (self.unit[i] * _product(self.form, self.unit[j])).sum(axis=-1)
-        return terms
+        return self.softness * (self.unit[i] * _product(self.form, self.unit[j])).sum(axis=-1)
 
     @property
     def flexibility(self) -> Array:
@@ -232,14 +231,11 @@ class Released:
 
     def _state(self, load: Array, share: float, moment: Array) -> SetState:
         """The state under a load (n, …), a share of what else acts, and moments on the ends of rods (rods, 2)."""
-        structure, rods, model = self.theory.structure, self.theory.structure.grown(share), self._model
+        structure = self.theory.structure
         if moment.any():
             load = load - structure.held(moment)
-        places = settled(model)
-        supports = structure.of_supports(structure.field(places[:, :2], places[:, 2]))
-        supports, strain = share * supports, share * model.rods.plastic_strain
-        moved, response = self.theory.equilibrium(load, supports, strain, share, rods)
-        return SetState.of(model, rods, load, moved, response, moment)
+        supports = share * settled_supports(self._model, structure)
+        return SetState.solved(self.theory, load, supports, share, moment)
 
 
 def real_structure(model: Model) -> tuple[Released, SetState]:
@@ -264,8 +260,7 @@ def bulge(model: Model) -> Array:
     rods = model.rods
     axis = rods.difference / rods.original_length[:, None]
     held = on_axis(Kinks.of(model).on_clamped(rods.rest_length), axis)[1]
-    found: Array = (held / 3.0 - held[:, ::-1] / 6.0) * [-1.0, 1.0]
-    return found
+    return (held / 3.0 - held[:, ::-1] / 6.0) * [-1.0, 1.0]
 
 
 def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequence[SetState]) -> Work:
@@ -321,8 +316,7 @@ def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequ
 def _free(model: Model) -> Array:
     """ΔL, by which rods are longer without force (m), (rods,)."""
     rods = model.rods
-    longer: Array = rods.rest_length * rods.plastic_strain - rods.misfit
-    return longer
+    return rods.rest_length * rods.plastic_strain - rods.misfit
 
 
 def _places(model: Model) -> Array:

@@ -301,19 +301,15 @@ class Loading:
         share = abs(float(mode @ push)) / (np.linalg.norm(mode) * np.linalg.norm(push))
         where = moved(self.model, critical.displacement, self.point.displacement)
         if beyond.sense > 0.0 and share < UNEXCITED:
-            kind, message = (
-                "bifurcation",
-                marked(
-                    "Bifurcation: the equilibrium becomes unstable {at}, and the structure buckles to the next stable one:"
-                    " {where}. It moved to one side; it could just as well have moved to the other."
-                ),
+            kind = "bifurcation"
+            message = marked(
+                "Bifurcation: the equilibrium becomes unstable {at}, and the structure buckles to the next stable one:"
+                " {where}. It moved to one side; it could just as well have moved to the other."
             )
         else:
-            kind, message = (
-                "snap-through",
-                marked(
-                    "Snap-through: the structure becomes unstable {at} and snaps to the next stable equilibrium: {where}."
-                ),
+            kind = "snap-through"
+            message = marked(
+                "Snap-through: the structure becomes unstable {at} and snaps to the next stable equilibrium: {where}."
             )
         yielded = self.point.plastic_strain != critical.plastic_strain
         rows = np.flatnonzero(of_rods(yielded))

@@ -23,9 +23,8 @@ LARGEST_PENALTY = 1e9
 NUDGE = 1e-3  # of a rod's length: how far to push off an unstable equilibrium
 BALANCED = 1e-9  # of the largest force: what is left over in an equilibrium, be it unstable
 LARGEST_PLASTIC_STRAIN = 0.1  # gained on the way; what is beyond is no result: structural metal tears before
-LARGEST_PLASTIC_ROTATION = (
-    0.25  # rad: where what yields is as long as it is deep, its edges strain by half of that
-)
+# Rad: where what yields is as long as it is deep, its edges strain by half of that.
+LARGEST_PLASTIC_ROTATION = 0.25
 RUNAWAY = 100.0  # times the structure's extent: a displacement without end
 ROUND_AND_ROUND = 30.0  # rad: a rotation without end
 

@@ -173,8 +173,7 @@ def _factors(given: Sequence[float] | float) -> list[float]:
             factor=factor,
             largest=LARGEST,
         )
-    found: list[float] = factors.tolist()
-    return found
+    return factors.tolist()
 
 
 class _Settling:
@@ -469,6 +468,7 @@ class _Settling:
             self.load,
             load_factor=self.factor,
             dissipated_plastic=self.point.dissipated,
+            acting=self.external.at(self.factor),
             residual=self._residual(),
             status=status,
             message=joined(told),

@@ -35,7 +35,8 @@ class StaticState:
     dissipated_plastic: since settling began. status: "equilibrium"; "neutral equilibrium" where nothing resists some
     motion, so that the place is one of many; "unstable equilibrium"; "mechanism", "collapse" or "limit reached", with
     which all values are those of the last equilibrium on the way. events: those on the way from the state before.
-    contacts: rows of the discs that press each other, (k, 2), with contact_force (k,).
+    contacts: rows of the discs that press each other, (k, 2), with contact_force (k,). acting: external forces (n, 2), where
+    members bend with moments (n, 3).
     """
 
     load_factor: float
@@ -59,6 +60,7 @@ class StaticState:
     events: tuple[Event, ...]
     contacts: Rows
     contact_force: Array
+    acting: Array
 
     @classmethod
     def of(
@@ -141,6 +143,12 @@ class StaticState:
         }
         found = {f"particles.{name}": values for name, values in of_particles.items()}
         return found | {f"rods.{name}": values for name, values in of_rods.items()}
+
+    @property
+    def shown(self) -> dict[str, NDArray[Any]]:
+        """The same, with what acts on particles."""
+        force, moment = self.acting[:, :2], self.acting[:, 2:].sum(axis=1)
+        return self.columns | {"particles.applied_force": force, "particles.applied_moment": moment}
 
     @property
     def permanent(self) -> Array:

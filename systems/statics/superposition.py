@@ -11,13 +11,14 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from pinjoint.components.cases import settled
 from pinjoint.components.model import Model
-from pinjoint.systems.statics.equations import Array, Response, Structure, largest
+from pinjoint.systems.statics.equations import Array, Structure, largest
+from pinjoint.systems.statics.theory import FirstOrder
 from pinjoint.systems.statics.unknowns import Unknown
 
-ROUNDING = (
-    1e-12  # of the largest force, or of the geometric mean of their diagonal: smaller flexibilities are 0
-)
+# Of the largest force, or of the geometric mean of their diagonal: smaller flexibilities are 0.
+ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -37,8 +38,7 @@ class SetState:
     @property
     def bending_moment(self) -> Array:
         """At the ends of the rods, positive where the side on their right is in tension, (rods, 2)."""
-        moment: Array = self.end_moment * np.array([-1.0, 1.0])
-        return moment
+        return self.end_moment * np.array([-1.0, 1.0])
 
     def without_rounding(self, length: Array) -> SetState:
         """The same, in which what is nothing beside the largest force is 0; length: of the rods, as levers (rods,)."""
@@ -58,10 +58,16 @@ class SetState:
         )
 
     @classmethod
-    def of(
-        cls, model: Model, rods: Structure, load: Array, moved: Array, response: Response, moment: Array
+    def solved(
+        cls, theory: FirstOrder, load: Array, supports: Array, share: float, moment: Array | float = 0.0
     ) -> SetState:
-        """That of a structure under a load (n, …), displaced so, with moments (rods, 2) on the ends of rods besides."""
+        """That of a structure under a load (n, …), whose supports are displaced so, and a share of what acts without one.
+
+        moment: on the ends of rods besides, (rods, 2). Raises NoEquilibrium.
+        """
+        model, rods = theory.model, theory.structure.grown(share)
+        strain = share * model.rods.plastic_strain
+        moved, response = theory.equilibrium(load, supports, strain, share, rods)
         reaction = np.zeros((len(moved), 3))
         reaction[:, : rods.width] = rods.reactions(response, load)
         end_moment = rods.end_moments(response) + moment
@@ -77,6 +83,12 @@ class SetState:
                 for part in fields(cls)
             )
         )
+
+
+def settled_supports(model: Model, structure: Structure) -> Array:
+    """How far rigid supports are moved and turned, in directions that a structure holds, (n, …)."""
+    places = settled(model)
+    return structure.of_supports(structure.field(places[:, :2], places[:, 2]))
 
 
 @dataclass(frozen=True)

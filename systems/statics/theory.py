@@ -207,6 +207,7 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
         moved,
         load,
         load_factor=factor,
+        acting=load,
         dissipated_plastic=0.0,
         residual=structure.largest(unbalanced) / forces if forces > 0.0 else 0.0,
         status=STABLE,
@@ -275,8 +276,7 @@ def self_stress(model: Model) -> Array:
         for _ in range(_REFINEMENTS):
             states = states - compatibility @ factor.solve(compatibility.T @ states)
     states = _localised(states)[: structure.deformations - int(structure.sprung.sum())]
-    scaled: Array = (states / np.abs(states).max(axis=0, initial=0.0)).T
-    return scaled
+    return (states / np.abs(states).max(axis=0, initial=0.0)).T
 
 
 def _rank(structure: Structure) -> int:
@@ -302,8 +302,7 @@ def _rigid(structure: Structure) -> Structure:
 
 def _tolerance(matrix: Array) -> float:
     """Of the largest singular value: smaller ones are round-off."""
-    least: float = 8.0 * max(matrix.shape) * ROUND_OFF
-    return least
+    return 8.0 * max(matrix.shape) * ROUND_OFF
 
 
 def _null_space(matrix: Array) -> Array:
@@ -312,8 +311,7 @@ def _null_space(matrix: Array) -> Array:
         return np.eye(matrix.shape[1])
     from scipy.linalg import null_space
 
-    space: Array = null_space(matrix, _tolerance(matrix))
-    return space
+    return null_space(matrix, _tolerance(matrix))
 
 
 def _localised(basis: Array) -> Array:

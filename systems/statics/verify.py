@@ -200,10 +200,8 @@ class Comparison:
         table, unit, _ = QUANTITIES[quantity]
         found = {way: float(values[place]) for way, values in self._values[quantity].items()}
         errors = {f"{way}_error": float(values[place]) for way, values in self._errors[quantity].items()}
-        name, component = (
-            str(self.model.tables[table].column("name")[place[0]]),
-            (ENDS if table == "rods" else "xy")[place[1]] if place[1:] else "",
-        )
+        name = str(self.model.tables[table].column("name")[place[0]])
+        component = (ENDS if table == "rods" else "xy")[place[1]] if place[1:] else ""
         return Row(table.removesuffix("s"), name, quantity, component, unit, **found, **errors)
 
     def worst(self, way: str, *quantities: str) -> Row | None:
@@ -243,8 +241,7 @@ class Comparison:
         if quantity in ("rotation", "reaction_moment"):
             clamped = held[:, 2] if quantity == "reaction_moment" else ~particles.fixed_rotation
             return np.asarray(rigid_joints(self.model) & clamped)
-        concerned: Flags = held[:, :2] if quantity == "reaction" else ~particles.fixed
-        return concerned
+        return held[:, :2] if quantity == "reaction" else ~particles.fixed
 
     def scale(self, quantity: str) -> float:
         """The largest exact value of the quantity; where it is rounding, of its unit; 0 where that is rounding."""

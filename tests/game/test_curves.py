@@ -62,3 +62,14 @@ def test_the_window_plots_it_until_the_next_edit() -> None:
     assert [name for name, _, _ in shown.curves] == ["B.x", "B.y"]
     session.rods["AB"].stiffness *= 1.1
     assert plots(session) == []
+
+
+def test_the_window_plots_it_beyond_the_load_steps() -> None:
+    """von Mises's truss under less than it bears, and without any load at the end: the curve passes its limit points."""
+    for steps in ([0.5], [0.5, 0.0]):
+        session = Session.open("von_mises")
+        session.settings.load_steps = steps
+        session.press("ctrl+u")
+        [shown] = plots(session)
+        [(_, _, factor)] = shown.curves
+        assert factor[-1] == pytest.approx(1.0)

@@ -260,8 +260,7 @@ class DrawArrow(Drawing):
 
     @property
     def _field(self) -> Field[Any]:
-        found: Field[Any] = getattr(type(self.elements[0]), self.field)
-        return found
+        return getattr(type(self.elements[0]), self.field)
 
     @property
     def unit(self) -> tuple[str, str]:
@@ -347,8 +346,7 @@ class DrawSpanLoad(DrawArrow):
 
     @property
     def _field(self) -> Field[Any]:
-        found: Field[Any] = getattr(SpanLoad, self.field)
-        return found
+        return getattr(SpanLoad, self.field)
 
     def start(self, context: Context) -> Vector:
         """Where the arrow begins (m): at the last place on the rod, as it is drawn."""
@@ -378,10 +376,8 @@ class DrawSpanLoad(DrawArrow):
         context.notice = tr(self.says, rods=begun(rod.said), load=self.shown(value), place=place)
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        made, along = (
-            super().preview(context, pixel),
-            list(map(self._at, self.places)),
-        )
+        made = super().preview(context, pixel)
+        along = list(map(self._at, self.places))
         if made is None or len(along) == 1:
             return made
         return replace(made, kind="distributed force", along=((along[0], along[1]),))

@@ -80,8 +80,7 @@ class Method(Scene):
 
     @property
     def _said(self) -> str:
-        said: str = self.words.message(self.shown_guide) if self.shown_guide else self._problem
-        return said
+        return self.words.message(self.shown_guide) if self.shown_guide else self._problem
 
     def enter(self, context: Context) -> None:
         self._problem, self._mechanism, self._page_of = "", None, None

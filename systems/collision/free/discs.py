@@ -344,8 +344,7 @@ def _shared_ends(others: Obstacles) -> Floats:
     rows = np.tile(np.arange(len(others)), 2)
     np.minimum.at(owner, spot.ravel(), rows)
     shared = (owner[spot.ravel()] < rows).reshape(2, -1)
-    found: Floats = SHARED_START * shared[0] + SHARED_END * shared[1]
-    return found
+    return SHARED_START * shared[0] + SHARED_END * shared[1]
 
 
 # --- the kernels ----------------------------------------------------------------------------------

@@ -128,8 +128,7 @@ class Parts:
     def are_on(self, boxes: Boxes, own: Codes) -> Truths:
         """For each box whether its middle is on the line of its own element, or on any of its parts if it has none."""
         points = Boxes(boxes.middle, np.zeros_like(boxes.half), boxes.of)
-        found: Truths = self._own_distances(points, own)[0] < self.unit
-        return found
+        return self._own_distances(points, own)[0] < self.unit
 
     def gather(self, points: Points) -> None:
         """Find the parts near points (n, 2), about which alone one can ask. To be called when all parts are there."""
@@ -138,10 +137,8 @@ class Parts:
         found = []
         for bands in self._bands():
             finite = np.isfinite((bands.start + bands.end + bands.rise).sum(axis=1))
-            half, ends = (
-                bands.half[:, None],
-                (bands.start, bands.end, bands.start + bands.rise, bands.end + bands.rise),
-            )
+            half = bands.half[:, None]
+            ends = (bands.start, bands.end, bands.start + bands.rise, bands.end + bands.rise)
             near = (np.minimum.reduce(ends) - half <= high) & (np.maximum.reduce(ends) + half >= low)
             found.append(bands.some(finite & near.all(axis=1)))
         self._squares = _Squares(*self.viewport.corners, _SIDE * self.unit)
@@ -223,14 +220,12 @@ def _cut(bands: _Bands, longest: float) -> _Pieces:
 def ranges(first: Rows, count: Rows) -> Rows:
     """The numbers first, first + 1, …, `count` of them, for each of several, one after the other."""
     ends = np.cumsum(count)
-    found: Rows = np.arange(ends[-1] if len(ends) else 0) + np.repeat(first - (ends - count), count)
-    return found
+    return np.arange(ends[-1] if len(ends) else 0) + np.repeat(first - (ends - count), count)
 
 
 def within(values: NDArray[Any], low: ArrayLike, high: ArrayLike) -> NDArray[Any]:
     """Values between bounds: np.clip for the small arrays of single labels, of which it takes a multiple of the time."""
-    found: NDArray[Any] = np.minimum(np.maximum(values, low), high)
-    return found
+    return np.minimum(np.maximum(values, low), high)
 
 
 class _Squares:
@@ -302,5 +297,4 @@ def _to_segments(middle: Points, half: Points, start: Points, end: Points) -> Va
     away = np.minimum(*ends)
     for corner in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
         away = np.minimum(away, distance_to_segments(half * corner, start, end))
-    found: Values = away
-    return found
+    return away

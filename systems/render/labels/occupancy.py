@@ -122,15 +122,13 @@ class Occupancy:
                 [not blocked[top:low, left:right].any() for left, top, right, low in cells.tolist()], bool
             )
         left, top, right, bottom = cells.T
-        before = np.zeros(
-            (height + 1, width + 1), dtype=np.int32
-        )  # how many are above and to the left of each corner
+        # How many are above and to the left of each corner.
+        before = np.zeros((height + 1, width + 1), dtype=np.int32)
         blocked.cumsum(axis=1, dtype=np.int32, out=before[1:, 1:])
         for above, row in pairwise(before):  # in half the time of a sum along columns
             row += above
         high, low = ([before.take(y * (width + 1) + x) for x in (left, right)] for y in (top, bottom))
-        free: Truths = low[1] - high[1] == low[0] - high[0]
-        return free
+        return low[1] - high[1] == low[0] - high[0]
 
     def may_be_of(self, cells: Rows, *owners: Codes) -> Truths:
         """For each box of `cells` (n, 4), False where lines through it are seen to be of others than `owners`, each (n,).
@@ -156,8 +154,7 @@ class Occupancy:
         """Rows and columns of the cells that hold points (n, 2)."""
         height, width = self.taken.shape
         cells = (points - [self.viewport.left, self.viewport.top]) / self.cell
-        found: Rows = within(cells, 0.0, [width - 1, height - 1]).astype(np.intp)[:, ::-1]
-        return found
+        return within(cells, 0.0, [width - 1, height - 1]).astype(np.intp)[:, ::-1]
 
     def cells_of(self, corners: Points, sizes: Points) -> Rows:
         """First column and row, and those after the last, that boxes touch, shape (n, 4), within the picture."""

@@ -37,10 +37,8 @@ _STAGES = 0, 3, 1000
 _COVERED = {"cover": (STRONG,), "spare": (FAINT, STRONG), "avoid": (0,)}  # by each attempt, at most
 
 
-NO_LINE = (
-    np.empty((0, 2)),
-    np.array([0.0, -1.0]),
-)  # the anchors of a label from which none may lead, and its way out
+# The anchors of a label from which none may lead, and its way out.
+NO_LINE = (np.empty((0, 2)), np.array([0.0, -1.0]))
 GIVEN = "particles.applied"  # how names of the fields of loads begin
 
 Key = tuple[str, int]  # such as ("rods.axial_force", its row)
@@ -296,8 +294,7 @@ class _Placing:
         angle = np.arctan2(outward[:, 1], outward[:, 0])[:, None] + turns
         direction = np.stack([np.cos(angle), np.sin(angle)], axis=2)
         reach = lengths * self.unit + (np.abs(direction) * half[:, None]).sum(axis=2)
-        found: Points = direction * reach[:, :, None]
-        return found
+        return direction * reach[:, :, None]
 
     def _stand(
         self, label: Label, place: int, middle: Points, cells: Sequence[int], line: _Line | None

@@ -80,8 +80,7 @@ def lengths(sheet: Sheet, key: tuple[str, int], sizes: Values, largest: float) -
 
     Scales come in steps, and stay while they fit, so that an arrow grows and shrinks with its own size only.
     """
-    found: Values = np.clip(LONGEST * sizes / steady(sheet, key, largest), SHORTEST, LONGEST) * sheet.unit
-    return found
+    return np.clip(LONGEST * sizes / steady(sheet, key, largest), SHORTEST, LONGEST) * sheet.unit
 
 
 def steady(sheet: Sheet, key: tuple[str, int], largest: float) -> float:
@@ -138,8 +137,7 @@ def draw_velocities(sheet: Sheet) -> None:
 def _directions(vectors: Values) -> Values:
     """Unit vectors in pixels, y down."""
     scaled = vectors / np.abs(vectors).max(axis=1)[:, None]  # squares of tiny components would underflow
-    directions: Values = scaled / np.hypot(scaled[:, 0], scaled[:, 1])[:, None] * [1.0, -1.0]
-    return directions
+    return scaled / np.hypot(scaled[:, 0], scaled[:, 1])[:, None] * [1.0, -1.0]
 
 
 def _draw_at_rims(

@@ -238,11 +238,11 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) 
         return None
     side = np.full(len(every), -1.0 if quantity == MOMENT else 1.0)
     few = every.with_kinks(np.linspace(0.0, 1.0, 5))
-    axes = stations(baseline(sheet, np.arange(len(every))), few, side)
-    fitting = max(largest, room * crowding(sheet, *axes, every.at(few), taken))
+    whole = baseline(sheet, np.arange(len(every)))
+    fitting = max(largest, room * crowding(sheet, *stations(whole, few, side), every.at(few), taken))
     scale = room * model.settings.diagram_scale / steady(sheet, (f"diagrams.{quantity}", 0), fitting)
     scale = min(scale, _FAR / largest)
-    base, curves, side = baseline(sheet, rows), every.some(rows), side[rows]
+    base, curves, side = whole.some(rows), every.some(rows), side[rows]
     most = np.clip(_PIECES // len(rows), 4, 24)  # more where rods are few and long
     tall = math.sqrt(scale * largest / FLAT)  # so many chords of a parabola so high are that flat
     pieces = int(np.clip(max(sheet.rod_length / (_PIECE * sheet.unit), tall), 8, most))
@@ -270,10 +270,8 @@ def crowding(sheet: Sheet, points: Points, normals: Points, values: Values, take
 def baseline(sheet: Sheet, rows: Rows) -> Axes:
     """The axes of rods in pixels as drawn."""
     camera, found = sheet.view.camera, Axes.of(sheet.model, rows)
-    left = found.left * [
-        camera.scale,
-        -camera.scale,
-    ]  # pixels' y is down, and what is ahead of a left side behind it
+    # Pixels' y is down, and what is ahead of a left side behind it.
+    left = found.left * [camera.scale, -camera.scale]
     drift = None if found.drift is None else found.drift.times(-1.0)
     return Axes(camera.to_pixels(found.start), camera.to_pixels(found.end), left, found.bow, drift)
 
@@ -497,8 +495,7 @@ def _continued(sheet: Sheet, rows: Rows, constant: Values, largest: float) -> Tr
     before = np.full(len(sheet.centres), np.nan)
     before[end] = constant
     joined = np.bincount(sheet.ends.ravel(), minlength=len(sheet.centres)) == 2
-    same: Truths = joined[start] & (np.abs(before[start] - constant) <= _ALIKE * largest)
-    return same
+    return joined[start] & (np.abs(before[start] - constant) <= _ALIKE * largest)
 
 
 def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values) -> Truths:
@@ -587,5 +584,4 @@ def _in_rows(at: Points, way: Points, across: Sequence[Values], along: Points, s
     """Places of values by points (n, 2): at distances (n,) each along unit vectors `way` (n, 2), and in each of these
     rows shifted by `slides` (n, k) along others, (n, rows, k, 2)."""
     offset = np.stack(across, axis=1)[:, :, None, None] * way[:, None, None, :]
-    places: Points = at[:, None, None, :] + offset + slides[:, None, :, None] * along[:, None, None, :]
-    return places
+    return at[:, None, None, :] + offset + slides[:, None, :, None] * along[:, None, None, :]

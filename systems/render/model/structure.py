@@ -111,8 +111,7 @@ def _sagging(sheet: Sheet) -> Rows:
     along = sheet.end[sheet.curved.rods] - start
     away, length = sheet.curved.start - start, np.maximum(np.hypot(*along.T), 1e-9)
     aside = np.abs(along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]) / length
-    found: Rows = sheet.rods[sheet.curved.rods[aside > _GHOST_FROM * sheet.unit]]
-    return found
+    return sheet.rods[sheet.curved.rods[aside > _GHOST_FROM * sheet.unit]]
 
 
 def draw_halos(sheet: Sheet) -> None:
@@ -321,8 +320,7 @@ def _places_by_particle(sheet: Sheet, row: int, half: Points) -> Points:
     for gap in (0.0, 6.0 * sheet.unit, 14.0 * sheet.unit):
         corner, side = half + 0.8 * radius + 3.0 * sheet.unit + gap, half + radius + gap
         places += [corner * _CORNERS, side * _SIDES]
-    found: Points = sheet.centres[row] + np.concatenate(places)
-    return found
+    return sheet.centres[row] + np.concatenate(places)
 
 
 def places_by_rod(sheet: Sheet, index: int, half: Points) -> Points:

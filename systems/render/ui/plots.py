@@ -138,8 +138,7 @@ def _thinned(points: Points, step: float) -> Points:
     along = np.cumsum(np.nan_to_num(np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T)))
     kept: Truths = np.diff(np.floor(along / step), prepend=-1.0) > 0.0
     kept[-1] = True
-    found: Points = points[kept | ~np.isfinite(points).all(axis=1)]
-    return found
+    return points[kept | ~np.isfinite(points).all(axis=1)]
 
 
 def _range(columns: list[Values]) -> Vector:

@@ -5,16 +5,20 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+import pygame
 import pytest
 
 import pinjoint.systems.edit.hover
 from pinjoint import Session
 from pinjoint.app import SELDOM, App
 from pinjoint.documents import models
+from pinjoint.editor.frame import Frame
 from pinjoint.systems.edit.picking import pick
 from pinjoint.systems.input import pygame_input
 from pinjoint.systems.render import picture
 from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.pygame_render import PygameRender
+from pinjoint.systems.render.ui import toolbar
 
 
 @pytest.fixture
@@ -55,6 +59,38 @@ def test_a_running_window_draws_every_frame_and_one_at_rest_none(app: App) -> No
     app.session.run(until="rest")
     frames(app, 2)
     assert frames(app, 20) == 0
+
+
+def test_a_toolbar_is_drawn_again_where_it_changed_or_was_covered(
+    app: App, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    composed: list[object] = []
+
+    def compose_toolbar(*stage: Any) -> Any:
+        composed.append(stage)
+        return toolbar.compose_toolbar(*stage)
+
+    monkeypatch.setattr(picture, "compose_toolbar", compose_toolbar)
+    session, strip, (x, y) = app.session, app.session.view.strip, app.session.point(1.0, 0.5)
+    deeds = ["i", "space", ".", "space", "ctrl+z", "f1", "escape", "n", "d", "escape", "return", "escape", "q"]
+    deeds += ["right click", "escape", "l", "escape", "k", "escape", "f8", "f8", "p", "escape"]
+    for number, deed in enumerate(deeds):
+        at = (x, y) if number % 5 else (strip.middle[0], 30.0 + number)
+        session.view.pointer = at
+        session.press(deed, at)
+        for _ in range(2):
+            app.frame(1 / 60)
+            seen = pygame.surfarray.array3d(app.render.surface)[: session.view.strip.width]
+            render = PygameRender(pygame.Surface(app.render.surface.get_size(), depth=32))
+            render.process(Frame(session, 0.0))
+            anew = pygame.surfarray.array3d(render.surface)[: session.view.strip.width]
+            assert (seen == anew).all(), deed
+    session.view.pointer = (x, y)
+    session.press("space")
+    frames(app, 2)
+    composed.clear()
+    assert frames(app, 5) == 5
+    assert not composed
 
 
 def test_one_of_a_thousand_flashes_is_drawn_anew(app: App) -> None:
