@@ -29,7 +29,7 @@ from pinjoint.components.theory import EXACT
 from pinjoint.components.wording import quoted
 from pinjoint.systems.statics.bending import needed_parts
 from pinjoint.systems.statics.contacts import Discs, Sinking
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised, of_axes
+from pinjoint.systems.statics.equations import ROUND_OFF, SOFT, Array, Structure, largest, normalised, of_axes
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import (
     describe_motion,
@@ -39,7 +39,7 @@ from pinjoint.systems.statics.explain import (
     slack_named,
 )
 from pinjoint.systems.statics.external import External, loose_bodies
-from pinjoint.systems.statics.factor import SOFT, SURELY_HELD, regular, soft_modes, softest
+from pinjoint.systems.statics.factor import SURELY_HELD, regular, soft_modes, softest
 from pinjoint.systems.statics.follow import Path, Point
 from pinjoint.systems.statics.loading import Loading, first_order_mechanism
 from pinjoint.systems.statics.relax import BALANCED

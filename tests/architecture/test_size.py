@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 71_860,
+    "lines": 71_916,
     "files": 385,
-    "names": 3_964,  # functions, classes and constants of modules
-    "public names": 2_360,
-    "numbers": 1_526,  # other than 0, 1 and 2, in constants and defaults
+    "names": 3_966,  # functions, classes and constants of modules
+    "public names": 2_362,
+    "numbers": 1_532,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 58_548,
+    "lines of tests": 58_415,
 }
 
 
