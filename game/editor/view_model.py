@@ -74,16 +74,14 @@ def show(context: Context, elapsed: float) -> None:
     elif solved:
         rested = None if context.window is None else elapsed
         unfinished = tool_in_hand(context) in (DrawRod.tool, "place")  # more of the structure is to come
-        lasting = [
-            "" if unfinished else statics.message,
-            statics.second_order(rested) if context.gesture is None else "",
-        ]
-        if lasting[1]:
+        lasting = ["" if unfinished else statics.message]
+        if second := statics.second_order(rested) if context.gesture is None else "":
             offer = tr(NAMES[EXACT if statics.first_order else FIRST_ORDER]), "next theory"
         if context.gesture is None and not unfinished:
             collapse, divides = statics.collapse(rested)
             lasting.append(collapse)
             offer = (tr("divide there"), "divide at hinges") if divides else offer
+        lasting.append(second)
     else:
         remarks = [remark.message for remark in context.document.assessment.remarks]
         lasting = [*remarks, "" if follows(context) else _gone(context)]
