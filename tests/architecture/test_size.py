@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 71_916,
+    "lines": 72_123,
     "files": 385,
-    "names": 3_966,  # functions, classes and constants of modules
-    "public names": 2_362,
-    "numbers": 1_532,  # other than 0, 1 and 2, in constants and defaults
+    "names": 3_969,  # functions, classes and constants of modules
+    "public names": 2_363,
+    "numbers": 1_534,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 58_415,
+    "lines of tests": 59_379,
 }
 
 
