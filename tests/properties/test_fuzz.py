@@ -33,3 +33,12 @@ def test_any_edits_in_statics(seed: int, mending: float, least: float, most: flo
     seen = Counter[str]()
     solved_edits.attempt(seed, 60, seen, mending)
     assert least <= seen["stable"] / seen["states"] <= most
+
+
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("seed", [1, 3])
+def test_any_edits_in_statics_of_frames_that_collapse(seed: int) -> None:
+    """With plastic hinges and struts that buckle, which are drawn, too."""
+    seen = Counter[str]()
+    solved_edits.attempt(seed, 60, seen, elastic=False)
+    assert seen["inelastic"] > 0
