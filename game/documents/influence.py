@@ -131,7 +131,7 @@ class Influence:
     def shape(self, model: Model) -> Shape:
         """The line drawn over the model, below it where a force downwards makes the quantity greater, with its values."""
         least, most = (
-            f"{written.number(value)} ({rod}, x = {written.number(x)} m)"
+            f"{written.number(value)} ({rod}, x = {written.length(x, written.DIGITS)})"
             for _, (value, rod, x) in self.extremes(model)
         )
         title = tr(

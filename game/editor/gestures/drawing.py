@@ -327,7 +327,8 @@ class DrawDistributedForce(DrawArrow):
 
 
 class DrawSpanLoad(DrawArrow):
-    """A force at a place of a rod; after a second click on the rod, one that is distributed up to there."""
+    """A force at a place of a rod; after a second click on the rod, one that is distributed up to there; along all of it,
+    where kN/m are typed."""
 
     tool, field = "span load", "force"
     asks = marked("load on {rods}: click where its arrow ends, or on the rod where a distributed load ends")
@@ -355,6 +356,13 @@ class DrawSpanLoad(DrawArrow):
 
     def finish(self, context: Context, pixel: Vector) -> None:
         place, on_rod = along(context, self.elements[0], pixel), pick_rod(context.model, context.view, pixel)
+        if (
+            "/" in self.typed and self.typed.endswith("m") and len(self.places) == 1
+        ):  # kN/m: along the whole rod
+            self.places, self.field = (
+                [0.0, float(self.elements[0].original_length)],
+                SpanLoad.end_intensity.name,
+            )  # type: ignore[misc]
         if self.typed or len(self.places) > 1 or on_rod is not self.elements[0] or place in self.places:
             super().finish(context, pixel)
             return
