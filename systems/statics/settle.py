@@ -143,7 +143,9 @@ def settle(
     return found
 
 
-def _touch(settling: _Settling, discs: Discs, factors: Sequence[float], found: Settlement, start: Start) -> bool:
+def _touch(
+    settling: _Settling, discs: Discs, factors: Sequence[float], found: Settlement, start: Start
+) -> bool:
     """True if a body without supports is pulled that others may hold, if discs overlap that did not at the beginning, or if
     they move so far that they may pass an obstacle."""
     loads = map(settling.external.at, factors)
