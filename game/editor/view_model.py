@@ -104,7 +104,9 @@ def show(context: Context, elapsed: float) -> None:
     view.heading = tr(scene.heading)
     view.provisional = _provisional(context)
     view.shape = context.document.shapes.shown or (statics.motion if solved else None)
-    view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
+    view.near_buckling = context.document.shapes.near_buckling(elapsed)
+    moves = view.shape is not None or view.near_buckling
+    view.swing = context.document.shapes.swing(elapsed) if moves else 1.0
     _show_readouts(context)
     _point_out(context)
     drawing = tr(context.gesture.hint) if context.gesture is not None else _hint_of_tool(context)
