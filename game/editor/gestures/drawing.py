@@ -358,13 +358,9 @@ class DrawSpanLoad(DrawArrow):
 
     def finish(self, context: Context, pixel: Vector) -> None:
         place, on_rod = along(context, self.elements[0], pixel), pick_rod(context.model, context.view, pixel)
-        if (
-            "/" in self.typed and self.typed.endswith("m") and len(self.places) == 1
-        ):  # kN/m: along the whole rod
-            self.places, self.field = (
-                [0.0, float(self.elements[0].original_length)],
-                SpanLoad.end_intensity.name,
-            )  # type: ignore[misc]
+        if "/" in self.typed and self.typed.endswith("m") and len(self.places) == 1:  # kN/m
+            self.places = [0.0, float(self.elements[0].original_length)]
+            self.field = SpanLoad.end_intensity.name  # type: ignore[misc]
         if self.typed or len(self.places) > 1 or on_rod is not self.elements[0] or place in self.places:
             super().finish(context, pixel)
             return
