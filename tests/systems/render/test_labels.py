@@ -96,7 +96,6 @@ def test_where_a_list_of_all_values_finds_no_room_some_are_listed() -> None:
     session.press("q")
     session.resize(420, 300)
     session.press("home")
-    session.press("i")
     session.frame(0.0)
     hidden, numbered = compose(session.model, session.view, LIGHT, {}).untold
     assert 0 < hidden < numbered
