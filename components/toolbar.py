@@ -15,10 +15,8 @@ EDGE = 4.0  # points around all buttons
 GAP = 6.0  # points between groups
 NAME = 13.0  # points that the name of a group is high
 LEAST_WIDTH = 420.0  # points: a window less wide does without
-WORDS_FROM, WORDED = (
-    1200.0,
-    114.0,
-)  # points: of a window in which buttons have words, in two columns; of such a button
+# Points: of a window in which buttons have words, in two columns; of such a button.
+WORDS_FROM, WORDED = 1200.0, 114.0
 
 
 class Arrangement(NamedTuple):

@@ -281,8 +281,8 @@ class View:
     1 to −1, that is drawn now.
     names: all elements have their names, not only few.
     utilisation: rods show in colours how much of their strength they bear.
-    envelope: diagrams show what is most and least in all combinations. enveloped: which that is, a
-    statics.envelope.Envelope; None: they do not.
+    envelope: diagrams show what is most and least in all combinations, or while a force moves along a path of rods.
+    enveloped: which that is, a statics.envelope.Envelope; None: they do not.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     free_bodies: rods and joints are drawn apart, with the forces on each.
     wanted: which of our own a person switched on among them: theory beside the run, its energy, its events.
@@ -328,6 +328,7 @@ class View:
     largest_force: float = 0.0
     utilisation: bool = False
     envelope: bool = False
+    path: tuple[Rod, ...] = ()
     enveloped: Any = None
     names: bool = False
     wanted: frozenset[str] = frozenset()

@@ -121,11 +121,10 @@ def _of_rods(model: Model, length: Array, force: float, moment: float) -> Table:
             columns.append(_column(f"{key}_at", tr("at x"), CM, places[:, side]))
         columns.append(_column("deflection", tr("deflection"), MOVED, bows))
         if has_plastic_moments(model):
-            columns += _parts(
-                "plastic_rotation", tr("plastic rotation"), ENDS, _MRAD, rods.plastic_rotation, 0.0
-            )
-            title = tr("M_p reduced by N")
-            columns.append(_column("reduced_plastic_moment", title, _KNM, reduced_plastic_moment(model)))
+            columns += _parts("plastic_rotation", "θ_p", ENDS, _MRAD, rods.plastic_rotation, 0.0)
+            if has_strength(model):
+                title = tr("M_p reduced by N")
+                columns.append(_column("reduced_plastic_moment", title, _KNM, reduced_plastic_moment(model)))
     else:
         columns.append(_column("axial_force", "N", _KN, rods.axial_force, force))
     if has_strength(model):
@@ -168,7 +167,8 @@ def _sums(model: Model, place: Array, bowed: float, force: float, moment: float)
         (particles.applied_force, particles.applied_moment, bowed),
         (particles.reaction, particles.reaction_moment, 0.0),
     ):
-        turning = _cross(place - place[first : first + 1], forces) + np.where(turns, moments, 0.0)
+        (x, y), (across, up) = (place - place[first : first + 1]).T, forces.T
+        turning = x * up - y * across + np.where(turns, moments, 0.0)
         rows.append(np.column_stack([forces, turning])[used].sum(axis=0) + np.array([0.0, 0.0, more]))
     x, y, turning = np.array(rows).T
     columns = [
@@ -190,11 +190,6 @@ def _between(model: Model) -> float:
     slopes = rigid_slopes(rods, rotation[rods.between], chord_rotation(model))
     along = on_axis(rods.span_load, chord / np.maximum(rods.length, 1e-300)[:, None])[0]
     return couples - model.share * float((slopes * along).sum())
-
-
-def _cross(arm: Array, force: Array) -> Array:
-    """Moments (n,) of forces (n, 2)."""
-    return arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
 
 
 def _parts(

@@ -131,12 +131,10 @@ def _data(tables: ForceTables, *, single: bool, sets: bool) -> dict[str, Any]:
 def _work(tables: ForceTables) -> dict[str, Any]:
     """By rod: what the sums of virtual work are made of; n, m and terms of each unknown in the order of `released`."""
     axial, bending = tables.solution.work.axial, tables.solution.work.bending
-    found, count, rods, base = (
-        dict[str, Any](),
-        len(tables.solution.unknowns),
-        tables.model.rods,
-        tables.solution.base,
-    )
+    found = dict[str, Any]()
+    count = len(tables.solution.unknowns)
+    rods = tables.model.rods
+    base = tables.solution.base
     for row, name in enumerate(rods.names):
         found[name] = {
             "length": rods.rest_length[row],

@@ -63,9 +63,8 @@ class Chronicle:
         self._model, self._simulation = model, simulation
         self._seen: list[Happening] = []
         self._stands = (-1, False)  # revision of the document, and whether it is no mechanism
-        self._given: dict[
-            str, frozenset[str]
-        ] = {}  # names of slack cables, and of buckled struts, at the last look
+        # Names of slack cables, and of buckled struts, at the last look.
+        self._given: dict[str, frozenset[str]] = {}
         self._looked = -1.0
         self._yielded: tuple[Column, list[Happening]] = np.empty(0), []
         self._struck: tuple[bytes, list[Happening], int] = b"", [], 0
@@ -76,13 +75,8 @@ class Chronicle:
     def happenings(self) -> tuple[Happening, ...]:
         """All of the run, in order of time."""
         now = self._model.clock.time
-        found = [
-            *self._yields(),
-            *self._hinges(),
-            *self._events(),
-            *self._impacts(),
-            *(seen for seen in self._seen if seen.time <= now),
-        ]
+        found = [*self._yields(), *self._hinges(), *self._events(), *self._impacts()]
+        found += [seen for seen in self._seen if seen.time <= now]
         found.sort(key=lambda happening: happening.time)
         return (*found, *self._end())
 

@@ -96,9 +96,8 @@ def _parsed(document: Any) -> Model:
     model.foreign_versions = dict(document.get(MODS, {}))
     model.title = _text(document, "title")
     model.description = _text(document, "description")
-    for name, kind in sorted(
-        SECTIONS.items(), key=lambda item: item[1] is Settings
-    ):  # which may name a load case
+    # Settings last, which may name a load case.
+    for name, kind in sorted(SECTIONS.items(), key=lambda item: item[1] is Settings):
         if name in document:
             _read(model, _section(f"$.{name}", kind, document[name]))
     if FOREIGN in document:

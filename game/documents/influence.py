@@ -33,11 +33,8 @@ from pinjoint.systems.statics.theory import FirstOrder, Indeterminacy, influence
 from pinjoint.systems.statics.unknowns import MethodError, Unknown
 from pinjoint.systems.statics.verify import QUANTITIES
 
-FORCES = {
-    "axial_force": "N",
-    "bending_moment": "M",
-    "shear": "V",
-}  # in rods, and how names of places in them call these
+# In rods, and how names of places in them call these.
+FORCES = {"axial_force": "N", "bending_moment": "M", "shear": "V"}
 MOST = 60  # values along a line
 
 

@@ -91,13 +91,9 @@ def choose_folder(typed: str, *, make: bool) -> None:
             )
         if make:
             folder.mkdir(parents=True, exist_ok=True)
-    except (
-        OSError,
-        RuntimeError,
-        ValueError,
-    ) as error:  # such as of an unknown user's ~, or a character that none has
-        if isinstance(error, NameRefused):
-            raise
+    except NameRefused:
+        raise
+    except (OSError, RuntimeError, ValueError) as error:  # such as of an unknown user's ~
         reason = getattr(error, "strerror", None) or str(error)
         raise NameRefused(
             "The folder {folder} cannot be used: {reason}. Write another one.", folder=typed, reason=reason

@@ -34,9 +34,8 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
     from pinjoint.systems.statics.second_order import SecondOrder
     from pinjoint.systems.statics.settle import Settlement
 
-PLASTIC = frozenset(
-    ("yield", "hinge", "buckling", "plastic mechanism", "collapse")
-)  # kinds of events beyond the elastic range
+# Kinds of events beyond the elastic range.
+PLASTIC = frozenset(("yield", "hinge", "buckling", "plastic mechanism", "collapse"))
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
 _MOST_COMPARED = 300  # rods, up to which both theories take a moment only
 REST = 0.2  # s without an edit, after which a window compares them
@@ -226,12 +225,18 @@ class Statics:
         factors = settings.load_steps if load_factors is None else load_factors
         return settle(model, factors, theory or settings.theory, Start.undeformed(model, self._permanent()))
 
-    def envelope(self, names: Sequence[str] = (), theory: str | None = None) -> Envelope:
-        """Bounds of what these combinations do, all there are if none is named, by a theory. Raises ValueError."""
+    def envelope(
+        self, names: Sequence[str] = (), theory: str | None = None, path: Sequence[str] = ()
+    ) -> Envelope:
+        """Bounds of what these combinations do, all there are if none is named, by a theory; or of what a force does that
+        moves along a path of rods. Raises ValueError.
+        """
         from pinjoint.systems.statics.envelope import Envelope
 
         model, settings = self._model, self._model.settings
         with model.own_state():
+            if path:
+                return Envelope.under_moving_force(model, path)
             return Envelope.of(model, names, theory or settings.theory, settings.load_steps, self._permanent())
 
     def second_order(self, elapsed: float | None = None) -> str:

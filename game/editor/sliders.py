@@ -34,14 +34,8 @@ LOADS = Slider((), 0.0, 2.0)  # the range of that, unless the model needs more
 SCALES = Slider((), 1.0, 1000.0, logarithmic=True)  # of displacements, unless the model needs more
 ABOVE = 28.0  # points, of the status bar
 DECADES = 10.0  # a new slider of a stiffness goes from the value / 10 to the value × 10
-NOTHING = {
-    "K": 50.0,
-    "kN": 10.0,
-    "kN/m": 10.0,
-    "kN·m": 10.0,
-    "m/s²": 10.0,
-    "m/s": 1.0,
-}  # by unit: how far a new slider of a 0 goes
+# By unit: how far a new slider of a 0 goes.
+NOTHING = {"K": 50.0, "kN": 10.0, "kN/m": 10.0, "kN·m": 10.0, "m/s²": 10.0, "m/s": 1.0}
 
 
 # --- what is shown -------------------------------------------------------------------------------------------

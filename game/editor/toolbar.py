@@ -170,11 +170,9 @@ def menu_at(context: Context, pixel: Vector) -> Menu:
 
 def _of_selection(context: Context, pixel: Vector) -> Groups:
     """What the elements have in common comes first."""
-    particles, rods, alone = (
-        context.model.tagged(Selected, Particle),
-        context.model.tagged(Selected, Rod),
-        len(context.selected) == 1,
-    )
+    particles = context.model.tagged(Selected, Particle)
+    rods = context.model.tagged(Selected, Rod)
+    alone = len(context.selected) == 1
     turns = bool(particles) and bool(rigid_joints(context.model)[[one.row for one in particles]].any())
     results = [
         ("toggle diagrams", marked("force diagram")),

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components import written
+from pinjoint.components import cases, written
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.language import begun, english, joined, listed, marked, plural, tr
@@ -74,16 +74,14 @@ def show(context: Context, elapsed: float) -> None:
     elif solved:
         rested = None if context.window is None else elapsed
         unfinished = tool_in_hand(context) in (DrawRod.tool, "place")  # more of the structure is to come
-        lasting = [
-            "" if unfinished else statics.message,
-            statics.second_order(rested) if context.gesture is None else "",
-        ]
-        if lasting[1]:
+        lasting = ["" if unfinished else statics.message]
+        if second := statics.second_order(rested) if context.gesture is None else "":
             offer = tr(NAMES[EXACT if statics.first_order else FIRST_ORDER]), "next theory"
         if context.gesture is None and not unfinished:
             collapse, divides = statics.collapse(rested)
             lasting.append(collapse)
             offer = (tr("divide there"), "divide at hinges") if divides else offer
+        lasting.append(second)
     else:
         remarks = [remark.message for remark in context.document.assessment.remarks]
         lasting = [*remarks, "" if follows(context) else _gone(context)]
@@ -91,7 +89,7 @@ def show(context: Context, elapsed: float) -> None:
     view.enveloped = None
     if view.envelope and solved:
         try:
-            view.enveloped = context.document.envelope
+            view.enveloped = context.document.envelope([rod.name for rod in view.path if rod.exists])
             if left_out := list(view.enveloped.without):
                 said = tr(
                     "Without an equilibrium, and so left out of the envelope: {names}.", names=listed(left_out)
@@ -215,14 +213,17 @@ def _point_out(context: Context) -> None:
     view.pointer, pointed = context.view.pointer, None
     if isinstance(model, Model) and (hovered := model.tagged(Hovered)):
         rows = told(model, hovered[0], forces_known=view.forces_known)
+        if rows and view.enveloped is not None:
+            rows.append((tr("combination"), cases.said(model, model.settings.combination)))
         pointed = Readout(model.describe(hovered[0]), tuple(rows)) if rows else None
         if isinstance(rod := hovered[0], Rod) and view.pointer is not None:
             place = distance_at(model, view, rod, view.pointer)
-            pointed = pointed if place is None else along(model, rod, place)
+            pointed = pointed if place is None else along(model, rod, place, view.enveloped)
     view.pointed = context.view.pointed = pointed
     if (pin := context.view.pin) is not None:
         shown = pinned(context) is not None
-        context.view.pin = replace(pin, told=along(context.model, pin.rod, pin.distance) if shown else None)
+        told_there = along(context.model, pin.rod, pin.distance, context.view.enveloped) if shown else None
+        context.view.pin = replace(pin, told=told_there)
 
 
 def _awaited(context: Context) -> Waiting | None:

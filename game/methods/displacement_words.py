@@ -119,10 +119,7 @@ def working(guide: DisplacementGuide) -> tuple[str, ...]:
         )
     found = ",  ".join(amount(tables, i) for i in every)
     left = written.number(tables.unbalanced)
-    return (
-        found,
-        tr("Equilibrium of all joints: what is left to hold them is {force} kN.", force=left),
-    )
+    return (found, tr("Equilibrium of all joints: what is left to hold them is {force} kN.", force=left))
 
 
 def entry(tables: DisplacementTables, i: int, j: int) -> tuple[str, str, str]:

@@ -123,6 +123,26 @@ class _Page:
     def _text(self, words: str, style: str = "text") -> Flowable:
         return self.layout.text(words, style)
 
+    @property
+    def _quantity(self) -> str:
+        """That which figures of states show."""
+        return MOMENT if self.solved.bends else AXIAL
+
+    def _by_unit(self, i: int) -> str:
+        """What it is called by a unit of an unknown."""
+        return f"{self._quantity.lower()}{index(i + 1)}"
+
+    def _under_load(self, solved: Model, caption: str, cuts: Sequence[Cut] = ()) -> list[Block]:
+        """The real structure, and that of which states are solved, under the load."""
+        nothing = SetState.superposed([self.solution.real], [0.0])
+        real = still(base_structure(self.model, []), self.model, nothing)
+        state = still(solved, self.model, self.solution.base)
+        said = tr(caption, force=f"{self._quantity}₀", unit="kN·m" if self.solved.bends else "kN")
+        return [
+            figure(self.layout, real, tr("The structure, its supports and its loads")),
+            figure(self.layout, state, said, diagrams=self._quantity, cuts=cuts),
+        ]
+
     def structure(self) -> list[Flowable]:
         """The structures in figures, and what the unknowns are."""
         raise NotImplementedError
@@ -201,24 +221,16 @@ class _ForcePage(_Page):
 
     def structure(self) -> list[Flowable]:
         """The real structure, the released one under the load and each unknown, and how often it is indeterminate."""
-        model, solution, layout = self.model, self.solution, self.layout
-        quantity, unit = (MOMENT, "kN·m") if self.solved.bends else (AXIAL, "kN")
-        symbol, unknowns = "M" if self.solved.bends else "N", list(solution.unknowns)
-        nothing = SetState.superposed([solution.real], [0.0])
-        real = still(base_structure(model, []), model, nothing)
-        released = base_structure(model, unknowns)
-        blocks = [figure(layout, real, tr("The structure, its supports and its loads"))]
-        caption = tr("Released structure under the load: {force} ({unit})", force=f"{symbol}₀", unit=unit)
-        hinged = list(_cuts(model, released, unknowns))
-        under_load = still(released, model, solution.base)
-        blocks.append(figure(layout, under_load, caption, diagrams=quantity, cuts=hinged))
-        for i in self._every:
-            blocks.append(self._under_unit(i, quantity, f"{symbol.lower()}{index(i + 1)}"))
+        unknowns = list(self.solution.unknowns)
+        released = base_structure(self.model, unknowns)
+        caption = marked("Released structure under the load: {force} ({unit})")
+        blocks = self._under_load(released, caption, list(_cuts(self.model, released, unknowns)))
+        blocks += map(self._under_unit, self._every)
         return _flowing(
             [self._text(tr("1  Structure and released structure"), "heading")], [*blocks, *self._said()], 0
         )
 
-    def _under_unit(self, i: int, quantity: str, force: str) -> Block:
+    def _under_unit(self, i: int) -> Block:
         model, unknowns, state = self.model, list(self.solution.unknowns), self.solution.units[i]
         alone = [float(i == j) for j in self._every]
         unknown = unknowns[i]
@@ -229,8 +241,12 @@ class _ForcePage(_Page):
         return figure(
             self.layout,
             still(copy, model, state),
-            tr("Released structure under {unknown} = 1: {force}", unknown=f"X{index(i + 1)}", force=force),
-            diagrams=quantity,
+            tr(
+                "Released structure under {unknown} = 1: {force}",
+                unknown=f"X{index(i + 1)}",
+                force=self._by_unit(i),
+            ),
+            diagrams=self._quantity,
             cuts=cuts,
             has_units=False,
         )
@@ -358,31 +374,13 @@ class _DisplacementPage(_Page):
     )
 
     def structure(self) -> list[Flowable]:
-        model, solution, layout, count = self.model, self.solution, self.layout, len(self._every)
-        quantity, symbol = (MOMENT, "M") if self.solved.bends else (AXIAL, "N")
-        nothing = SetState.superposed([solution.real], [0.0])
-        blocks = [
-            figure(
-                layout,
-                still(base_structure(model, []), model, nothing),
-                tr("The structure, its supports and its loads"),
-            )
-        ]
+        model, solution, count = self.model, self.solution, len(self._every)
         fast = held(base_structure(model, []), solution)
-        caption = tr(
-            "All unknowns held, under the load: {force} ({unit})",
-            force=f"{symbol}₀",
-            unit="kN·m" if self.solved.bends else "kN",
-        )
-        blocks.append(figure(layout, still(fast, model, solution.base), caption, diagrams=quantity))
+        blocks = self._under_load(fast, marked("All unknowns held, under the load: {force} ({unit})"))
         for i in self._every if count <= _MOST else ():
             copy = still(held(unloaded(model, []), solution), model, solution.units[i], moved=True)
-            said = tr(
-                "{unknown} = 1 alone: {force}",
-                unknown=f"Δ{index(i + 1)}",
-                force=f"{symbol.lower()}{index(i + 1)}",
-            )
-            blocks.append(figure(layout, copy, said, diagrams=quantity, has_units=False, moved=True))
+            said = tr("{unknown} = 1 alone: {force}", unknown=f"Δ{index(i + 1)}", force=self._by_unit(i))
+            blocks.append(figure(self.layout, copy, said, diagrams=self._quantity, has_units=False, moved=True))
         degree = Count.of(model)
         unknowns = ",  ".join(displacement_words.unknown(self.solved, i) for i in self._every)
         lines = [self._text(line) for line in (*displacement_words.degree_of(count, degree), unknowns)]
@@ -422,7 +420,6 @@ class _DisplacementPage(_Page):
         line = matrices(
             [number(solution.stiffness), symbols, "=", [[x] for x in number(solution.load)]], self.layout
         )
-        amounts = _APART.join(displacement_words.amount(self.solved, i).replace(" ", "\u00a0") for i in every)
         said = tr(
             "K Δ = F ({units}); K is symmetric (Maxwell):",
             units="m, rad, kN, kN·m" if self.solved.bends else "m, kN",

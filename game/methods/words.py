@@ -69,11 +69,7 @@ def message(guide: ForceGuide) -> str:
 
 def hint(guide: ForceGuide) -> str:
     """The next possible step."""
-    steps = [
-        tr("I next of M, V, N") if guide.is_frame else tr("I forces"),
-        tr("Esc back"),
-        tr("C convention"),
-    ]
+    steps = [tr("I next of M, V, N") if guide.is_frame else tr("I forces"), tr("Esc back"), tr("C convention")]
     if guide.part == 2 and guide.axis_wanted is not None:
         steps = [tr("X horizontal"), tr("Y vertical")]
         if guide.clamp_wanted:

@@ -159,10 +159,8 @@ class Guard:
 
     def integrator(self, integrator: Integrator) -> Integrator:
         """The integrator of a mod, wrapped so that it is no longer chosen once the mod is switched off."""
-        own, what = (
-            integrator.stable_step,
-            tr("the stable step of the integrator '{name}'", name=integrator.name),
-        )
+        own = integrator.stable_step
+        what = tr("the stable step of the integrator '{name}'", name=integrator.name)
 
         def checked(frequency: float, decay: float) -> float:
             size = own(frequency, decay)

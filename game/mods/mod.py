@@ -32,12 +32,8 @@ MANIFEST = "mod.toml"
 LONGEST = 400  # characters of a text of a mod, such as what an error says
 PATIENCE = 10.0  # s that whatever a mod is asked may take, the compilation of functions of its own included
 
-_KEYS = {
-    "name": str,
-    "version": str,
-    "description": str,
-    "requires": list[str],
-}  # of a manifest, and their types
+# Of a manifest, and their types.
+_KEYS = {"name": str, "version": str, "description": str, "requires": list[str]}
 
 
 class ModError(Mistake, ValueError):

@@ -28,10 +28,8 @@ LEVER = 0.25  # of a moment, as a share of the extent
 USUAL_ACCELERATION = 10.0  # m/s², of a loaded free body
 USUAL_SPEED = 5.0  # m/s
 ARC = 24.0  # points around what bears a moment, within which its arrow is
-_DISTRIBUTED = {
-    "start_intensity": "distributed_force",
-    "end_intensity": "distributed_force",
-}  # by the same scale
+# By the same scale.
+_DISTRIBUTED = {"start_intensity": "distributed_force", "end_intensity": "distributed_force"}
 WHOLE = 0.3  # share of a distributed load at either end, by which its intensity there is dragged; between, both
 
 

@@ -23,10 +23,8 @@ from pinjoint.components.wording import quoted
 from pinjoint.systems.edit import Refusal
 
 MOST_PARTS = 1000
-DIVISIONS = {
-    2: marked("divide in two"),
-    4: marked("divide in four"),
-}  # titles of what menus offer, by the number of parts
+# Titles of what menus offer, by the number of parts.
+DIVISIONS = {2: marked("divide in two"), 4: marked("divide in four")}
 # Half a rod has half of the first and twice the others; sliders that move these move the first part only.
 _WITH_LENGTH, _AGAINST_LENGTH = ("prescribed_rest_length",), ("damping", "bending_damping")
 _OF_ENDS = "hinged", "end_springs", "plastic_rotation"

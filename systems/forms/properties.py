@@ -31,12 +31,8 @@ REMOVE = marked("remove it")  # what takes a combination away, in place of its n
 COMBINATION = marked("new combination")
 _MOST_ACROSS = 4  # boxes of a combination
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
-_DECIDED = (
-    Particle.asleep,
-    Rod.yielded_at,
-    Rod.hinge_formed_at,
-    Settings.combination,
-)  # by the run, or by buttons
+# By the run, or by buttons.
+_DECIDED = (Particle.asleep, Rod.yielded_at, Rod.hinge_formed_at, Settings.combination)
 _OWN_LOADS = (Particle.force, Rod.distributed_force)
 # The groups of boxes by heading, in the order in which they follow one another, with the Fields of all kinds in each, those
 # that matter first. What is in none, such as a Field of a mod, stands in the first, under the name of its element.

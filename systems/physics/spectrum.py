@@ -59,9 +59,8 @@ class RodOperator:
         (x, y), first, second, (count, _) = self._axis, self._first, self._second, self.shape
         change = [at.take(second) - at.take(first) for at in (self._root * vector[:, :2]).T]
         along = change[0] * x + change[1] * y
-        forces = [
-            (self._along - self._across) * along * axis for axis in self._axis
-        ]  # (k a aᵀ + t (1 − a aᵀ)) v
+        # (k a aᵀ + t (1 − a aᵀ)) v.
+        forces = [(self._along - self._across) * along * axis for axis in self._axis]
         product = np.empty_like(vector)
         if self._bends:
             turn, leaning = self._spin * vector[:, 2], (change[1] * x - change[0] * y) * self._inverse

@@ -47,10 +47,8 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
 }
 PROVIDED = {name for names in PROVIDED_TO.values() for name in names}
 TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
-TURNING = {
-    "particles_rotation": "displacement",
-    "particles_angular_velocity": "velocity",
-}  # of models that bend
+# Of models that bend.
+TURNING = {"particles_rotation": "displacement", "particles_angular_velocity": "velocity"}
 
 KERNELS = ("kernel", "branch", "margin", "potential")  # of a system, as its attributes
 

@@ -79,10 +79,8 @@ class Assembly:
 
 @lru_cache(maxsize=4)
 def _assembly(ends: bytes, unknown: bytes, shape: tuple[int, int], sparse: bool) -> Assembly:
-    rods, index = (
-        np.frombuffer(ends, dtype=np.intp).reshape(-1, 2),
-        np.flatnonzero(np.frombuffer(unknown, bool)),
-    )
+    rods = np.frombuffer(ends, dtype=np.intp).reshape(-1, 2)
+    index = np.flatnonzero(np.frombuffer(unknown, bool))
     if is_sparse := sparse and len(index) > DENSE:
         index = index[_sparse_order(rods, shape[1], shape[0], index)]
     return Assembly(rods, shape, index, is_sparse)

@@ -25,20 +25,19 @@ from pinjoint.components.rod import bears_between, extensible_elsewhere
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import needed_parts
-from pinjoint.systems.statics.equations import Array, Response, Rows, Structure, normalised, upright
+from pinjoint.systems.statics.equations import SOFT, Array, Response, Rows, Structure, normalised, upright
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, divide_named, rod_names
 from pinjoint.systems.statics.external import External
-from pinjoint.systems.statics.factor import SOFT, Factor, pseudo_random, regular, shifted, unresisted
+from pinjoint.systems.statics.factor import Factor, pseudo_random, regular, shifted, unresisted
 from pinjoint.systems.statics.state import Start, StaticState
 from pinjoint.systems.statics.theory import FULL, linear
 
 RESTARTS = 100
 LANCZOS = 40  # vectors that the lowest of larger structures are found from, at least
 MODES = 5
-IDLE = (
-    1e-6  # of the work of compression on the member that does most: those that do less take no part in a mode
-)
+# Of the work of compression on the member that does most: those that do less take no part in a mode.
+IDLE = 1e-6
 IN_LINE = 1e-6  # sine of the angle between rods, and share of their bending stiffness
 NOTHING = 1e-10  # of the largest axial force, or of the largest eigenvalue: round-off
 # Of the rods' stiffness: by what tension is to hold a mechanism before it gives way.

@@ -22,9 +22,8 @@ from pinjoint.systems.statics.relax import BALANCED, creep, has_run_away
 CONTACT_STRAIN = 1e-3  # of a contact under the largest load, before it is lengthened
 SHORTEST_MOVE = 0.25  # of its radius: the travel of a disc in a step, whatever is near
 LONGEST_MOVE = 0.45  # of its distance from the nearest other: the same elsewhere
-TOUCHING = (
-    1e-12  # of the sum of radii, or of a side: a gap, an overlap or a distance from its end that is round-off
-)
+# Of the sum of radii, or of a side: a gap, an overlap or a distance from its end that is round-off.
+TOUCHING = 1e-12
 NEARLY_TOUCHING = 1e-9  # the same, where lengthening no longer lessens it
 MOST_PAIRS = 10**6  # between which distances are measured; above, nodes of structures move SHORTEST_MOVE
 STIFF = 1e-4  # overlap, of the sum of radii, below which contacts need not become stiffer

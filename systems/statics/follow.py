@@ -39,9 +39,8 @@ CONVERGED = 1e-11  # of the largest force: a smaller residual that falls no more
 EXACT_EVENTS = 500  # rods up to which every yield ends an increment; larger: slower, answers as exact
 HALF = 0.5  # share of an increment to try after it failed
 RESOLUTION = 1 / 8  # of the change of load, to which yields are told apart in larger structures
-MOST_SHARES = (
-    20  # trials after which an increment is halved each time, where round-off hides the end of a piece
-)
+# Trials after which an increment is halved each time, where round-off hides the end of a piece.
+MOST_SHARES = 20
 LEAST_SHARE = 0.01  # of an increment to try next where a rod leaves its piece sooner
 REVERSAL = 1e-5  # increment to which the end of yielding is located; the error goes with its square
 SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
@@ -51,9 +50,8 @@ CONFIRMING = range(12, 28)
 FARTHER = 8.0  # times the way between two states on a path: they are on two if they are that far apart
 FEW_NARROWINGS = 14  # the same in structures larger than EXACT_EVENTS
 ACTIVE_SET_ROUNDS = 12
-WAYS = (
-    1e-12  # weight of ways beside elongations, in energy, where directions are compared: ways decide below 1e-6
-)
+# Weight of ways beside elongations, in energy, where directions are compared: ways decide below 1e-6.
+WAYS = 1e-12
 TIED = 1e-8  # of the same where ends yield, of which those at one joint may change their moments by round-off alone
 INDIFFERENT = 1e-11  # of the largest rate of elongation: a smaller one is round-off
 
@@ -145,6 +143,7 @@ class Path:
         self._dead_push = structure.gather(change)
         self.exact_events = len(structure.ends) <= EXACT_EVENTS
         self.scale = max(structure.largest(force), structure.largest(force + change))
+        self.largest_move = math.inf if structure.first_order else LARGEST_MOVE
         self.reference = 0.0  # size of du/dt that counts as much as dt does; that of the first tangent
 
     def load(self, t: float) -> Array:
@@ -223,10 +222,8 @@ class Path:
         """Of all directions, with a growing or a falling load, the one most like the last."""
         elastic = self._direction(response, branches, np.zeros_like(guess), onward)
         limited, matrix, growth = self._limits(response, branches, elastic)
-        best, likeness = (
-            replace(self._direction(response, branches, guess, onward), consistent=False),
-            -math.inf,
-        )
+        best = replace(self._direction(response, branches, guess, onward), consistent=False)
+        likeness = -math.inf
         for sense in (1.0, -1.0):
             for chosen in yielding_sets(matrix, sense * elastic.sense * growth, guess[limited]):
                 giving = self._giving(limited, matrix, sense * elastic.sense * growth, chosen)
@@ -385,7 +382,7 @@ class Path:
 
         An increment ends where a rod begins to yield, slackens or tightens; one that fails is halved.
         """
-        far = LARGEST_MOVE / max(self.structure.move(tangent.rate, point.response), 1e-300)
+        far = self.largest_move / max(self.structure.move(tangent.rate, point.response), 1e-300)
         nearest = min(self._until_event(point, tangent), 0.99 * far * self.stretch(tangent))
         trial, failed, shares = min(increment, nearest), False, 0
         while trial > min(SMALLEST, HALF * nearest):
@@ -481,7 +478,9 @@ class Path:
         normal = None
         if across is not None and self.reference > 0.0:
             normal = structure.measure**2 * across.rate / self.reference**2
-        displacement, step = guess, np.zeros_like(guess)
+        displacement, step, begun = guess, np.zeros_like(guess), start.displacement
+        if structure.first_order:  # the way to the guess is straight, however long
+            begun = guess
         before, dt, share, soft = math.inf, 0.0, 1.0, None
         for iteration in range(NEWTON_ITERATIONS):
             response = (
@@ -507,7 +506,7 @@ class Path:
             step, dt = structure.spread(moved[0]), moved[1]
             before, share, soft = size, 1.0, response.soft
             displacement, t = displacement + step, t + dt
-            change = structure.gather(displacement - start.displacement)
+            change = structure.gather(displacement - begun)
             if not structure.move(change, start.response) <= 2.0 * LARGEST_MOVE:
                 return None
         return None
@@ -548,7 +547,7 @@ class Path:
         """True if the increment went where the tangent pointed and the tangent did not turn much."""
         structure = self.structure
         size = structure.move(change, response)
-        if size > LARGEST_MOVE:
+        if size > self.largest_move:
             return False
         if structure.move(change - predicted, response) > MISS * size + 64.0 * ROUND_OFF:
             return False

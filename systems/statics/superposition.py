@@ -17,9 +17,8 @@ from pinjoint.systems.statics.equations import Array, Structure, largest
 from pinjoint.systems.statics.theory import FirstOrder
 from pinjoint.systems.statics.unknowns import Unknown
 
-ROUNDING = (
-    1e-12  # of the largest force, or of the geometric mean of their diagonal: smaller flexibilities are 0
-)
+# Of the largest force, or of the geometric mean of their diagonal: smaller flexibilities are 0.
+ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)

@@ -200,10 +200,8 @@ class Comparison:
         table, unit, _ = QUANTITIES[quantity]
         found = {way: float(values[place]) for way, values in self._values[quantity].items()}
         errors = {f"{way}_error": float(values[place]) for way, values in self._errors[quantity].items()}
-        name, component = (
-            str(self.model.tables[table].column("name")[place[0]]),
-            (ENDS if table == "rods" else "xy")[place[1]] if place[1:] else "",
-        )
+        name = str(self.model.tables[table].column("name")[place[0]])
+        component = (ENDS if table == "rods" else "xy")[place[1]] if place[1:] else ""
         return Row(table.removesuffix("s"), name, quantity, component, unit, **found, **errors)
 
     def worst(self, way: str, *quantities: str) -> Row | None:

@@ -9,15 +9,8 @@ from pathlib import Path
 from tests.catalogues import FIELDS, KEYWORDS, ROOT
 
 SOURCES = [path for top in ("components", "systems", "game") for path in sorted((ROOT / top).rglob("*.py"))]
-SAYING = {
-    "tr",
-    "tr_in",
-    "plural",
-    "marked",
-    "joined",
-    "begun",
-    "Binding",
-}  # the last marks a title by its place
+# The last marks a title by its place.
+SAYING = {"tr", "tr_in", "plural", "marked", "joined", "begun", "Binding"}
 TELLING = {"tell", "say", "switch_off", "told"}  # functions whose arguments are read by a person
 SHOWN = {
     "help",

@@ -60,13 +60,7 @@ def runs_of(problem: Problem, budget: float) -> Iterator[Row]:
 
 
 def _finer(
-    problem: Problem,
-    exact: Array,
-    method: str,
-    kind: str,
-    settings: Iterable[float],
-    run: Run,
-    budget: float,
+    problem: Problem, exact: Array, method: str, kind: str, settings: Iterable[float], run: Run, budget: float
 ) -> Iterator[Row]:
     for setting in settings:
         try:

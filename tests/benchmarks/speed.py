@@ -173,11 +173,7 @@ def peers(*, quick: bool) -> list[Row]:
     thesis.run(STEP, steps)
     seconds = time.perf_counter() - started
     rows = [
-        {
-            "peer": "thesis' program, one object per element",
-            "rods": 3,
-            "ns_per_rod": seconds / steps / 3 * 1e9,
-        }
+        {"peer": "thesis' program, one object per element", "rods": 3, "ns_per_rod": seconds / steps / 3 * 1e9}
     ]
     for size in (1_000,) if quick else (1_000, 10_000):
         rows.append(_pymunk_springs(size))

@@ -65,11 +65,7 @@ def failing(error: Exception) -> Callable[..., Any]:
 
 @pytest.mark.parametrize("error", ERRORS, ids=lambda error: type(error).__name__)
 def test_an_action_that_raises_is_told_of_and_the_next_ones_act(
-    app: App,
-    monkeypatch: pytest.MonkeyPatch,
-    caplog: pytest.LogCaptureFixture,
-    data: Path,
-    error: Exception,
+    app: App, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, data: Path, error: Exception
 ) -> None:
     monkeypatch.setitem(ACTIONS, "next shape", replace(ACTIONS["next shape"], perform=failing(error)))
     said = shown_to(app, monkeypatch, "b", "b", "ctrl+z", "b", "ctrl+y")

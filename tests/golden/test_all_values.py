@@ -123,9 +123,8 @@ def unreadable(session: Session, model: Model, view: View) -> Iterator[str]:
     """What cannot be read in a picture or the table beside it, or stands at something else; advice in a file."""
     picture = compose(model, view, LIGHT)
     found, listed = told(picture, model)
-    crowded = (
-        view.shares and view.canvas.height < 500 and model.rods.count > FEW
-    )  # a panel leaves no room for a list
+    # A panel leaves no room for a list.
+    crowded = view.shares and view.canvas.height < 500 and model.rods.count > FEW
     yield from misplaced(picture, model)
     if view.table[0]:
         assert session.lister.tables["rods"].names == model.rods.names

@@ -113,9 +113,7 @@ def amplification(scene: Scene, duration: float, size: float = 1e-9) -> float:
     direction *= scene.inverse_mass > 0
     direction /= np.abs(direction).max()
     moved = replace(
-        scene,
-        position=scene.position + size * direction[0],
-        velocity=scene.velocity + size * direction[1],
+        scene, position=scene.position + size * direction[0], velocity=scene.velocity + size * direction[1]
     )
     there, _ = run(scene, duration)
     beside, _ = run(moved, duration)

@@ -278,11 +278,7 @@ def portal_in_wind(integrator: str, **settings: Any) -> Model:
             particle("C", 6, 4, displacement=[-4.5364786e-05, -sunk], rotation=turned),
             particle("D", 6, 0, **feet),
         ],
-        [
-            rod("A", "B", **column),
-            rod("B", "C", **beam, distributed_force=[0, -20]),
-            rod("C", "D", **column),
-        ],
+        [rod("A", "B", **column), rod("B", "C", **beam, distributed_force=[0, -20]), rod("C", "D", **column)],
         settings={"integrator": integrator} | settings,
         loads=[{"on": "B", "force": [35, 0], "history": {"kind": "ramp", "start": 0.01, "duration": 0.5}}],
     )

@@ -24,12 +24,8 @@ from tests.reference.models import model, oscillator, particle, pendulum, rod, v
 Array = NDArray[np.float64]
 OMEGA = 2 * math.pi
 GRAVITY = 9.81
-BOUNDLESS = (
-    "tension_limit",
-    "compression_limit",
-    "moment_limit",
-    "buckling_load",
-)  # infinite where there is none
+# Infinite where there is none.
+BOUNDLESS = ("tension_limit", "compression_limit", "moment_limit", "buckling_load")
 
 
 @dataclass(frozen=True)

@@ -418,13 +418,7 @@ def test_a_rod_without_length_that_wants_one_stays_finite(apart: float) -> None:
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize(
-    "properties",
-    [
-        {"velocity": [1e300, 0.0], "mass": 1e-9},
-        {"velocity": [1e300, 0.0]},
-    ],
-)
+@pytest.mark.parametrize("properties", [{"velocity": [1e300, 0.0], "mass": 1e-9}, {"velocity": [1e300, 0.0]}])
 def test_numbers_that_are_too_large_are_said_in_the_window_only(properties: dict[str, Any]) -> None:
     """Nothing is written on standard error, not even while a hand pulls."""
     session = Session.open(model([particle("A", 0.0, 0.0, **properties), particle("B", 1.0, 0.0)], []))

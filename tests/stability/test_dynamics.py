@@ -57,10 +57,7 @@ def test_steps_below_and_above_the_limit(integrator: str, share: float) -> None:
 def test_a_creep_that_is_lost_in_rounding_is_rest() -> None:
     """Two metres from where it was drawn, a mass creeps by less in a step than the last digit of 2 m."""
     pushed = model(
-        [
-            particle("A", 0, 0, fixed=[True, True]),
-            particle("B", 1, 0, fixed=[False, True], force=[-1, 0]),
-        ],
+        [particle("A", 0, 0, fixed=[True, True]), particle("B", 1, 0, fixed=[False, True], force=[-1, 0])],
         [rod("A", "B", tension_only=True)],
     )
     session = Session.open(pushed)

@@ -222,9 +222,7 @@ def test_a_frame_system_runs_in_its_scene_and_nowhere_else(arcade: Callable[...,
     assert noting.ran == ["arcade"]
 
 
-def test_an_integrator_acts_in_its_scenes_and_another_elsewhere(
-    arcade: Callable[..., Session],
-) -> None:
+def test_an_integrator_acts_in_its_scenes_and_another_elsewhere(arcade: Callable[..., Session]) -> None:
     class Mine(SemiImplicitEuler):
         name = "test.mine"
         scenes = ("arcade",)

@@ -6,16 +6,7 @@ import numpy as np
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.bent import (
-    AXIAL,
-    FLAT,
-    MOMENT,
-    SHEAR,
-    Axes,
-    curved_lines,
-    inner_forces,
-    middles,
-)
+from pinjoint.components.bent import AXIAL, FLAT, MOMENT, SHEAR, Axes, curved_lines, inner_forces, middles
 from pinjoint.components.model import Model
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.spans import Curves, values, zeros

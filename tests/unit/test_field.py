@@ -110,11 +110,7 @@ def test_a_value_is_normalised(field: Field[Any], value: Any, expected: Any) -> 
         (number(dtype=str, choices=("a", "b")), "c", "rod AB: push is 'c'; choose one of a, b."),
         (number(dtype="reference"), -1, "rod AB: push is -1 kN; it must be at least 0 kN."),
         (number(dtype="reference"), 2**32, "it must be at most 4.29497e+09 kN."),
-        (
-            number(dtype="reference"),
-            "A",
-            "rod AB: push is 'A'; it must be an element, its name or its row.",
-        ),
+        (number(dtype="reference"), "A", "rod AB: push is 'A'; it must be an element, its name or its row."),
     ],
 )
 def test_a_refusal_names_element_value_and_remedy(field: Field[Any], value: Any, message: str) -> None:

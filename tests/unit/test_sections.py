@@ -131,11 +131,7 @@ def test_scripts_create_members_by_section() -> None:
     far = session.model.create(Particle, 2, position=[(8.0, 0.0), (12.0, 0.0)])
     rows = [session.particles["B"].row, *(each.row for each in far)]
     made = session.model.create(
-        Rod,
-        2,
-        between=list(itertools.pairwise(rows)),
-        section=["HEA 200", None],
-        material=[None, "S355"],
+        Rod, 2, between=list(itertools.pairwise(rows)), section=["HEA 200", None], material=[None, "S355"]
     )
     assert made[0].material == "S235"
     assert made[0].bending_stiffness > 7000.0

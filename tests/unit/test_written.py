@@ -59,12 +59,7 @@ def test_what_is_rounding_only_is_nothing() -> None:
 
 
 def test_what_a_person_set_is_as_short_as_it_is() -> None:
-    assert [written.length(x) for x in (0.5, 2.0, 0.1 + 0.2, 1e-9)] == [
-        "50 cm",
-        "200 cm",
-        "30 cm",
-        "1·10⁻⁷ cm",
-    ]
+    assert [written.length(x) for x in (0.5, 2.0, 0.1 + 0.2, 1e-9)] == ["50 cm", "200 cm", "30 cm", "1·10⁻⁷ cm"]
     assert written.vector((120.0, -160.5)) == "(120, −160.5)"
     assert written.place((0.0, 1e3)) == "(0, 100000) cm"
     assert written.given(100.0) == "100"

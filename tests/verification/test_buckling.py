@@ -235,10 +235,7 @@ def test_a_shallow_truss_and_one_in_a_line() -> None:
 def test_tension_holds_a_mechanism_beside_a_column() -> None:
     """A bar that hangs, loaded, beside the column: the column's load remains the answer."""
     document = column(4, CLAMPED, HEADS["free"])
-    document["particles"] += [
-        particle("top", 3.0, 9.0, **PINNED),
-        particle("bob", 3.0, 5.0, force=[0.0, -1.0]),
-    ]
+    document["particles"] += [particle("top", 3.0, 9.0, **PINNED), particle("bob", 3.0, 5.0, force=[0.0, -1.0])]
     document["rods"].append(rod("top", "bob", stiffness=1e5))
     critical = (math.pi / 2 / LENGTH) ** 2 * EI
     assert Buckling.of(parse(document)).factors[0] == pytest.approx(critical * (1 + 3.28e-5), rel=1e-6)

@@ -10,12 +10,8 @@ from tests.reference.elements import read
 from tests.reference.random_models import KINDS, case, drawn, numbers_of
 from tests.reference.transients import Untraceable, follow
 
-IN_MOTION = (
-    "everything, in motion",
-    "cables",
-    "discs on trusses",
-    "free discs that collide",
-)  # each is compiled
+# Each is compiled.
+IN_MOTION = ("everything, in motion", "cables", "discs on trusses", "free discs that collide")
 SETTLED = tuple(kind.title for kind in KINDS if not kind.moves)
 
 

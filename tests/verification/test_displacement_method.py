@@ -192,10 +192,7 @@ def test_both_methods_give_the_same_forces_by_script() -> None:
     assert len(session.force_method("AC.start").unknowns) == 1
 
 
-@pytest.mark.parametrize(
-    ("source", "said"),
-    [("pendulum", "mechanism"), (lattice(1500), f"up to {MOST}")],
-)
+@pytest.mark.parametrize(("source", "said"), [("pendulum", "mechanism"), (lattice(1500), f"up to {MOST}")])
 def test_what_has_no_solution_is_refused(source: object, said: str) -> None:
     with pytest.raises(MethodError, match=said):
         solve(source if isinstance(source, Model) else models.load(source))  # type: ignore[arg-type]

@@ -97,9 +97,8 @@ def test_random_frames_against_a_fine_mesh(number: int) -> None:
     found = Vibrations.of(parse(document)).angular_squared
     if number % 2 == 0:
         all_found = frame_theory.natural_frequencies(document, 4)
-        rounding = (
-            np.finfo(float).eps * all_found[-1]
-        )  # of a dense eigenvalue problem, which depends on the machine
+        # Of a dense eigenvalue problem, which depends on the machine.
+        rounding = np.finfo(float).eps * all_found[-1]
         assert found == pytest.approx(all_found[: len(found)], rel=1e-7, abs=rounding)
     fine = frame_theory.natural_frequencies(document, 16)[: len(found)]
     assert found[0] == pytest.approx(fine[0], rel=4e-3)

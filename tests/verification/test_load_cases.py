@@ -266,10 +266,7 @@ def curves_at(session: Session, names: Any, letter: str, row: int, distance: flo
 
 def test_combinations_without_a_solution_are_named() -> None:
     session = patterns(theory="exact")
-    session.model.settings.combinations = {
-        "good": {"permanent": 1.0},
-        "much": {"permanent": 1.0, "push": 1.0},
-    }
+    session.model.settings.combinations = {"good": {"permanent": 1.0}, "much": {"permanent": 1.0, "push": 1.0}}
     session.model.create(Load, on=[2], force=[(-9e4, 0.0)], case=["push"])
     found = session.envelope()
     assert found.combinations == ("good",)

@@ -211,10 +211,8 @@ def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
     session = _run(under_damped(), integrator="velocity_verlet", time_step=0.01)
     session.view.wanted = frozenset({"energy"})
     (readout,) = readouts(session)
-    assert readout.rows[-3] == (
-        "error of displacements",
-        "0.11 % of the largest",
-    )  # e^−ζωt (ωh)²/24 ωt
+    # E^−ζωt (ωh)²/24 ωt.
+    assert readout.rows[-3] == ("error of displacements", "0.11 % of the largest")
     assert [title for title, _ in readout.rows[-2:]] == ["error of velocities", "error of axial forces"]
     session.press("space")
     assert session.busy

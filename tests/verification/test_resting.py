@@ -152,10 +152,8 @@ def test_a_ball_on_two_nodes_loads_their_truss(stiffness: float) -> None:
 
 def test_settled_discs_are_where_a_run_comes_to_rest() -> None:
     """In the notch with drag; nothing moves any more when time goes on after settling a ball on a truss."""
-    running, settled = (
-        Session.open(notch(environment={"acceleration": [0, -G], "drag": 1.0})),
-        Session.open(notch()),
-    )
+    running = Session.open(notch(environment={"acceleration": [0, -G], "drag": 1.0}))
+    settled = Session.open(notch())
     running.settings.restitution = 0.2
     assert running.run(until="rest") == "at rest"
     assert settled.settle() == "equilibrium"

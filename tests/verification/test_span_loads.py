@@ -82,9 +82,8 @@ def test_random_frames_agree_with_members_divided_at_their_loads(seed: int) -> N
                 agree(curve.some(np.array([row])).at(shares)[0], key, part)
             if x > 0.0 and rod.bending_stiffness > 0.0:
                 there, joint = Station.of(model, row, x), f"{rod.name} {number}"
-                left = (
-                    np.array([-rod.difference[1], rod.difference[0]]) / length
-                )  # along it places move linearly
+                # Along it places move linearly.
+                left = np.array([-rod.difference[1], rod.difference[0]]) / length
                 away = left @ np.subtract(there.moved, wanted["displacement"][joint])
                 assert abs(away) <= 1e-9 * size["displacement"], joint
                 agree(there.rotation, "rotation", joint)

@@ -58,6 +58,13 @@ def _environment(context: Context, pixel: Vector) -> None:
     ACTIONS["properties"].perform(context, pixel)
 
 
+def _particles(context: Context) -> list[Particle]:
+    particles = context.model.tagged(Selected, Particle)
+    if not particles:
+        raise Refusal("No particle is selected; click one first.")
+    return particles
+
+
 def _are_held(wanted: Held, context: Context) -> bool:
     """Whether all selected particles have a support."""
     particles = context.model.tagged(Selected, Particle)
@@ -66,9 +73,7 @@ def _are_held(wanted: Held, context: Context) -> bool:
 
 def _hold(wanted: Held, context: Context, pixel: Vector) -> None:
     """Give all selected particles a support."""
-    particles = context.model.tagged(Selected, Particle)
-    if not particles:
-        raise Refusal("No particle is selected; click one first.")
+    particles = _particles(context)
     tell(context, tr(support(context.model, particles, wanted)), *particles)
 
 
@@ -85,9 +90,7 @@ for _wanted, (_name, _title) in SUPPORTS.items():
 )
 def _springs(context: Context, pixel: Vector) -> None:
     """Let springs hold the selected particles or, if all do so, rigid supports."""
-    particles = context.model.tagged(Selected, Particle)
-    if not particles:
-        raise Refusal("No particle is selected; click one first.")
+    particles = _particles(context)
     tell(context, put_on_springs(context.model, particles), *particles)
 
 
@@ -118,10 +121,8 @@ def _split(context: Context, pixel: Vector) -> None:
     rod = pick_rod(context.model, context.view, pixel)
     if rod is None:
         raise Refusal("There is no rod under the pointer; point at one.")
-    name, point = (
-        begun(heading(context.model, [rod])),
-        snapped(context.model, context.view, context.view.camera.to_model(pixel)),
-    )
+    name = begun(heading(context.model, [rod]))
+    point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
     parts = divide_at(context.model, rod, [round(share_at(rod, point), 6)])
     context.select(parts[0].ends[1])
     context.notice = tr("{rod}: divided at {particle}", rod=name, particle=parts[0].ends[1].name)

@@ -277,6 +277,8 @@ class DrawArrow(Drawing):
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value, elements = self.value(context, pixel), [one for one in self.elements if one.exists]
+        if not self.typed and value in (0.0, (0.0, 0.0)):
+            raise Refusal("This arrow has no length: draw it farther, or type its value, 0 for none.")
         if elements:
             draw_load(context.model, elements, self.field, value)
             named, rods = elements[0].said, begun(heading(context.model, elements))
@@ -374,10 +376,8 @@ class DrawSpanLoad(DrawArrow):
         context.notice = tr(self.says, rods=begun(rod.said), load=self.shown(value), place=place)
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        made, along = (
-            super().preview(context, pixel),
-            list(map(self._at, self.places)),
-        )
+        made = super().preview(context, pixel)
+        along = list(map(self._at, self.places))
         if made is None or len(along) == 1:
             return made
         return replace(made, kind="distributed force", along=((along[0], along[1]),))

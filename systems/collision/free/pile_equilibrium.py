@@ -72,9 +72,8 @@ class EquilibriumSearch:
         self._weight = np.append(mass * float(np.hypot(*pull.T).max(initial=0.0)), everywhere)
         self._weight[~self._moves] = np.inf
         self._size = np.append(radius, everywhere)
-        inertia = (self._weight[:count] / radius)[
-            :, None
-        ]  # lets a disc that nothing holds go by a radius in an iteration
+        # Lets a disc that nothing holds go by a radius in an iteration.
+        inertia = (self._weight[:count] / radius)[:, None]
         self._inertia = np.broadcast_to(inertia, place.shape)[self._free]
         self._list(pushing, forces)
 

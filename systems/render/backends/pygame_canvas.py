@@ -28,18 +28,14 @@ _Image = tuple[pygame.Surface, tuple[int, int]]  # and where its upper left corn
 
 _WHITE, _BLACK = (255, 255, 255, 255), (0, 0, 0, 255)
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
-_SHIFTS = {
-    "left": 0.0,
-    "centre": 0.5,
-    "right": 1.0,
-}  # shares of their widths by which texts begin before their places
+# Shares of their widths by which texts begin before their places.
+_SHIFTS = {"left": 0.0, "centre": 0.5, "right": 1.0}
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
 _FILLED = 3e4  # pixels, how far away what is filled may reach
 _LONGEST = 4000  # characters that are drawn of a text: more than any window is wide
-_MANY = (
-    300  # bars, discs; and 50 pixels of strokes for each: from there on it pays to load the compiled kernels
-)
+# Bars, discs; and 50 pixels of strokes for each: from there on it pays to load the compiled kernels.
+_MANY = 300
 
 
 class Canvas:
@@ -159,10 +155,8 @@ class Canvas:
             colours = _pixel(surface, mark.ink), _pixel(surface, mark.hollow)
             raster.discs(_pixels(surface), _clip(surface), mark, *colours)
         else:
-            fine, (symbol, unit) = (
-                np.round(4.0 * mark.radius),
-                ("ring", mark.rim / RIM) if mark.rim else ("disc", 1.0),
-            )
+            fine = np.round(4.0 * mark.radius)
+            symbol, unit = ("ring", mark.rim / RIM) if mark.rim else ("disc", 1.0)
             for quarters in sorted(set(fine.tolist())):
                 at = mark.at[fine == quarters]
                 surface.fblits(self._stamps(Stamps(symbol, at, quarters / 4.0, unit, mark.ink, mark.hollow)))

@@ -137,10 +137,8 @@ class Parts:
         found = []
         for bands in self._bands():
             finite = np.isfinite((bands.start + bands.end + bands.rise).sum(axis=1))
-            half, ends = (
-                bands.half[:, None],
-                (bands.start, bands.end, bands.start + bands.rise, bands.end + bands.rise),
-            )
+            half = bands.half[:, None]
+            ends = (bands.start, bands.end, bands.start + bands.rise, bands.end + bands.rise)
             near = (np.minimum.reduce(ends) - half <= high) & (np.maximum.reduce(ends) + half >= low)
             found.append(bands.some(finite & near.all(axis=1)))
         self._squares = _Squares(*self.viewport.corners, _SIDE * self.unit)

@@ -122,9 +122,8 @@ class Occupancy:
                 [not blocked[top:low, left:right].any() for left, top, right, low in cells.tolist()], bool
             )
         left, top, right, bottom = cells.T
-        before = np.zeros(
-            (height + 1, width + 1), dtype=np.int32
-        )  # how many are above and to the left of each corner
+        # How many are above and to the left of each corner.
+        before = np.zeros((height + 1, width + 1), dtype=np.int32)
         blocked.cumsum(axis=1, dtype=np.int32, out=before[1:, 1:])
         for above, row in pairwise(before):  # in half the time of a sum along columns
             row += above

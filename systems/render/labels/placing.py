@@ -37,10 +37,8 @@ _STAGES = 0, 3, 1000
 _COVERED = {"cover": (STRONG,), "spare": (FAINT, STRONG), "avoid": (0,)}  # by each attempt, at most
 
 
-NO_LINE = (
-    np.empty((0, 2)),
-    np.array([0.0, -1.0]),
-)  # the anchors of a label from which none may lead, and its way out
+# The anchors of a label from which none may lead, and its way out.
+NO_LINE = (np.empty((0, 2)), np.array([0.0, -1.0]))
 GIVEN = "particles.applied"  # how names of the fields of loads begin
 
 Key = tuple[str, int]  # such as ("rods.axial_force", its row)

@@ -270,10 +270,8 @@ def crowding(sheet: Sheet, points: Points, normals: Points, values: Values, take
 def baseline(sheet: Sheet, rows: Rows) -> Axes:
     """The axes of rods in pixels as drawn."""
     camera, found = sheet.view.camera, Axes.of(sheet.model, rows)
-    left = found.left * [
-        camera.scale,
-        -camera.scale,
-    ]  # pixels' y is down, and what is ahead of a left side behind it
+    # Pixels' y is down, and what is ahead of a left side behind it.
+    left = found.left * [camera.scale, -camera.scale]
     drift = None if found.drift is None else found.drift.times(-1.0)
     return Axes(camera.to_pixels(found.start), camera.to_pixels(found.end), left, found.bow, drift)
 

@@ -55,11 +55,9 @@ def draw_envelope(sheet: Sheet, envelope: Any, taken: float) -> None:
             text = _told(said(sheet, abs(value) if quantity == MOMENT else value, UNITS[quantity]), name)
             edge, way = base + scale * value * normal, np.copysign(1.0, value) * normal
             near = by_arrows(half_sizes(sheet, [text])[0], edge - 12.0 * u * way, edge, 3.0 * u)
-            key, owner, leads = (
-                (f"envelope.{quantity}", 2 * row + which),
-                ("rods", row),
-                (np.array([edge]), way),
-            )
+            key = (f"envelope.{quantity}", 2 * row + which)
+            owner = ("rods", row)
+            leads = (np.array([edge]), way)
             colour = sheet.colour_of("text")
             write(sheet, text, near, colour, key, owner, rank=FIRST - abs(value), own=owner, leads=leads)
 
@@ -80,11 +78,9 @@ def draw_enveloped_reactions(sheet: Sheet, envelope: Any) -> None:
         ways = np.array([(0.0, 1.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0)])
         far = np.array([34.0, 52.0, 12.0])[:, None, None] * u
         places = off(at + far * ways, ways, 2.0 * u, half).reshape(-1, 2)
-        owner, key, colour = (
-            ("particles", row),
-            ("envelope.reaction", 3 * row + axis),
-            sheet.colour_of("reaction"),
-        )
+        owner = ("particles", row)
+        key = ("envelope.reaction", 3 * row + axis)
+        colour = sheet.colour_of("reaction")
         write(sheet, text, places, colour, key, owner, own=owner, short=short)
         sheet.explain("reaction", at[None], at[None])
 

@@ -139,11 +139,9 @@ def _draw_bending(
             arcs = ("rods", sheet.rods[which])
             draw_arcs(sheet, arcs, at[which], radius, turn[which], colour, "rods.bending_moment")
         for index in which.tolist():
-            text, row, at = (
-                written.moment(abs(float(moment[index]))),
-                int(sheet.rods[index]),
-                rod_ends[side][index],
-            )
+            text = written.moment(abs(float(moment[index])))
+            row = int(sheet.rods[index])
+            at = rod_ends[side][index]
             ways = np.array([[0.0, -1.0], [0.0, 1.0], across[index], -across[index]])
             places = off(at, ways, (_ARC + _APART) * u, half_sizes(sheet, [text]))
             first, last = at + _ARC * u * ways[:2]

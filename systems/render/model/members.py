@@ -261,15 +261,7 @@ def _draw_points(sheet: Sheet, spans: Spans) -> None:
     some = np.flatnonzero(near & (spans.moment != 0.0))[:MOST]
     if len(some):
         moment, radius = share * spans.moment[some], np.full(len(some), _ARC["load"] * u)
-        draw_arcs(
-            sheet,
-            ("span_loads", load[some]),
-            at[some],
-            radius,
-            moment,
-            colour,
-            "span_loads.moment",
-        )
+        draw_arcs(sheet, ("span_loads", load[some]), at[some], radius, moment, colour, "span_loads.moment")
         sheet.explain("load moment", at[some], at[some])
         for k, value in zip(some.tolist(), moment.tolist(), strict=True):
             key, rod = ("span_loads.moment", int(load[k])), int(spans.row[k])

@@ -37,13 +37,7 @@ def compose_lesson(card: Card, view: View, theme: Theme) -> Picture:
     in_rows = card.buttons[:2], card.buttons[2:4], card.buttons[4:]
     main = next((one for one in card.buttons if one.enabled), None)
     rows = [
-        Row(
-            [_button(one, theme, main=one is main) for one in row],
-            6.0,
-            even=True,
-            high=24.0,
-            grow=1.0,
-        )
+        Row([_button(one, theme, main=one is main) for one in row], 6.0, even=True, high=24.0, grow=1.0)
         for row in in_rows
         if row
     ]

@@ -16,11 +16,8 @@ from pinjoint.systems.render.ui.buttons import button, closing
 from pinjoint.systems.render.ui.layout import Column, Gap, Paper, Part, Plate, Row, Text
 
 _BAR, _HEADS, _ROW, _EDGE = 28.0, 44.0, 18.0, 8.0  # points: high, of titles, heads and rows; around all
-_SIZES = (
-    (11.0, 46.0, 10.0),
-    (9.0, 36.0, 4.0),
-    (9.0, 0.0, 3.0),
-)  # points: of type, across a column at least, between columns
+# Points: of type, across a column at least, between columns.
+_SIZES = ((11.0, 46.0, 10.0), (9.0, 36.0, 4.0), (9.0, 0.0, 3.0))
 _NAME, _WIDEST = 110.0, 30.0  # points: across names at most, and what a column gets more where there is room
 _WHEEL = "table up", "table down"
 PRESSED = "press table"  # the action of all that can be pressed in it

@@ -14,7 +14,7 @@ from pinjoint.components.bent import farthest
 from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.cases import acting
 from pinjoint.components.field import on_screen
-from pinjoint.components.language import begun, listed, marked, plural, tr
+from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES, THEORIES
 from pinjoint.components.view import BETWEEN, LEAST_MODEL
@@ -301,11 +301,9 @@ def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark],
     """
     v, u, theme = sheet.viewport, sheet.unit, sheet.theme
     meanings = meanings_of([*sheet.legend, *_theory(sheet)]) if sheet.view.legend and sheet.legend else {}
-    if meanings and (said := acting(sheet.model)):
-        shown = sheet.view.enveloped
-        meanings[_ACTING] = (
-            said if shown is None else tr("envelope of {names}", names=listed(shown.combinations))
-        )
+    shown = sheet.view.enveloped
+    if meanings and (said := acting(sheet.model) if shown is None else shown.said):
+        meanings[_ACTING] = said
     if not meanings or v.width < LEAST_MODEL * u:
         return [], heading_end
     plates, beside = _arranged(tuple(meanings.items()), theme, v.width, right - v.left, u)

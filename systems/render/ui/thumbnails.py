@@ -16,12 +16,7 @@ from pinjoint.components.view import View, drawn_places
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Points, Stamps, Strokes
 from pinjoint.systems.render.model.arrows import draw_loads, draw_velocities
 from pinjoint.systems.render.model.diagrams import draw_diagrams
-from pinjoint.systems.render.model.members import (
-    draw_hinges,
-    draw_inextensible,
-    draw_moments,
-    draw_span_loads,
-)
+from pinjoint.systems.render.model.members import draw_hinges, draw_inextensible, draw_moments, draw_span_loads
 from pinjoint.systems.render.model.sheet import measure
 from pinjoint.systems.render.model.structure import draw_particles, draw_rods
 from pinjoint.systems.render.model.supports import draw_supports, support_sides

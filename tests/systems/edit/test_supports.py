@@ -86,9 +86,7 @@ def test_a_force_is_drawn_as_an_arrow_to_a_round_scale(triangle: Session) -> Non
     assert triangle.notice == "Load on B: (60, −80) kN"
 
 
-def test_a_force_along_an_axis_snaps_to_it_and_a_drop_on_the_particle_takes_it_away(
-    triangle: Session,
-) -> None:
+def test_a_force_along_an_axis_snaps_to_it_and_a_drop_on_the_particle_takes_it_away(triangle: Session) -> None:
     press_at(triangle, "f", -1.0, -1.0)
     triangle.drag((1.0, 1.0), (1.03, 0.2))
     assert triangle.particles["B"].force == (0.0, -80.0)

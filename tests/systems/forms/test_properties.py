@@ -94,7 +94,7 @@ def test_nothing_selected_is_the_environment_and_all_settings(session: Session) 
     scene = open_of(session)
     assert scene.form.heading == "Environment"
     assert {box.section for box in scene.form.boxes} == {
-        *("Environment", "All particles", "Load combinations", "All rods"),
+        *("Environment", "All particles", "Load combinations", "All rods")
     }
     assert {"force x", "acceleration y", "drag", "integrator", "force diagram scale"} <= session.boxes.keys()
 
@@ -124,7 +124,7 @@ def test_groups_of_several_kinds_follow_those_of_each(session: Session) -> None:
     sections = [section for section, _ in itertools.groupby(boxes, lambda box: box.section)]
     assert sections[0] == "2 particles"
     assert sections[sections.index("rod AB") :] == [
-        *("rod AB", "Section and material", "Loads", "Motion and contact", "All particles", "All rods"),
+        *("rod AB", "Section and material", "Loads", "Motion and contact", "All particles", "All rods")
     ]
 
 
@@ -133,12 +133,8 @@ def test_every_field_that_a_person_can_set_has_a_box(session: Session) -> None:
     for name, kind in (("B", Particle), ("AB", Rod)):
         targets = {box.target for box in open_of(session, name).form.boxes}
         for field in vars(kind).values():
-            decided = field in (
-                Particle.asleep,
-                Rod.yielded_at,
-                Rod.hinge_formed_at,
-                Rod.between,
-            )  # by the run, or when it was drawn
+            # By the run, or when it was drawn.
+            decided = field in (Particle.asleep, Rod.yielded_at, Rod.hinge_formed_at, Rod.between)
             if isinstance(field, Field) and field.role in SAVED and not decided:
                 axes = field.axes if field.shape else ("",)
                 wanted = {f"{kind.table}.{field.name}{'.' * bool(axis)}{axis}" for axis in axes}

@@ -42,10 +42,8 @@ def test_a_part_moves_with_the_bits_of_the_whole(form: str, monkeypatch: pytest.
     both, one = (Session.open(two_nets()).model for _ in range(2))
     systems, integrator = Schedule(step_systems()).step_plan("simulation", both), INTEGRATORS["velocity_verlet"]
     moving = np.array([not name.endswith("'") for name in one.particles.column("name")])
-    whole, part = (
-        make_program(both, systems, integrator, form),
-        ReorderedProgram(one, systems, integrator, form, moving),
-    )
+    whole = make_program(both, systems, integrator, form)
+    part = ReorderedProgram(one, systems, integrator, form, moving)
     assert part.module is whole.module
     for program in (whole, part):
         program.module.load()

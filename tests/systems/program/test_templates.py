@@ -25,11 +25,7 @@ def template(time, state, *columns):
     """Of a state, and *all* of it."""
     insert(lines)
     total = insert(what) * 2.0
-    other(
-        time,
-        *state,
-        *columns,
-    )
+    other(time, *state, *columns)
 
 
 def nothing():

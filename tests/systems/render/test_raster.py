@@ -175,10 +175,8 @@ def test_surfaces_of_other_sizes_come_next() -> None:
 @pytest.mark.parametrize("shift", [(0.0, 0.0), (300.0, 0.0), (-300.0, 0.0), (0.0, 900.0), (0.0, -900.0)])
 def test_what_strokes_can_reach_lies_within_the_clip(shift: Vector) -> None:
     """Blocks beyond the last column would be read, and cleared, wherever strokes lie to the right of a window."""
-    start, end = (
-        np.array([[10.0, 20.0], [90.0, 300.0]]) + shift,
-        np.array([[50.0, 20.0], [170.0, 10.0]]) + shift,
-    )
+    start = np.array([[10.0, 20.0], [90.0, 300.0]]) + shift
+    end = np.array([[50.0, 20.0], [170.0, 10.0]]) + shift
     cover, touched = np.zeros((360, 160), dtype=np.uint8), np.zeros((360, 160 // BLOCK), dtype=np.uint8)
     left, top, right, bottom = cover_strokes.py_func(cover, touched, (5, 7, 160, 360), start, end, 2.0)
     assert 5 <= left <= right <= 160
