@@ -452,7 +452,7 @@ def _scale(sheet: Sheet, metres: float, hidden: int, notes: list[str]) -> Plate 
 
 def draw_references(sheet: Sheet, values: Sequence[Numbered], former: int) -> list[Mark]:
     """Numbers that stand for values, and these in columns that cover no text, where the last picture has them if that is
-    free; where there is no room, neither of loads, then of the less important half. former: that place, -1 without one."""
+    free; neither where there is no room, loads first. former: that place, -1 without one."""
     if not values:
         return []
     lines, occupancy, u = [], sheet.occupancy, sheet.unit
@@ -480,12 +480,11 @@ def draw_references(sheet: Sheet, values: Sequence[Numbered], former: int) -> li
                 paper.put(block, Rectangle(*at, *size.tolist()))
                 sheet.scales[LIST] = int(at[0]) * _WIDEST + int(at[1])
                 return [*(mark for *_, own in values for mark in own), *paper.marks]
-    loads, kept = [one for one in values if one[1].is_given()], values[: len(values) // 2]
-    if loads:
-        kept = [one for one in values if not one[1].is_given()]
-    for _, label, _ in loads or values[len(kept) :]:
-        sheet.placed.pop(label.key or ("", 0), None)
-    return draw_references(sheet, kept, former)
+    results = [one for one in values if not one[1].is_given()]
+    for _, label, _ in values:
+        if label.is_given() or len(results) == len(values):
+            sheet.placed.pop(label.key or ("", 0), None)
+    return draw_references(sheet, results, former) if len(results) < len(values) else []
 
 
 def _ruler(theme: Theme, at: Rectangle, u: float) -> list[Mark]:

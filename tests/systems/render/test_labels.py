@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pinjoint import Session
 from pinjoint.components.camera import Viewport
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
@@ -89,16 +88,6 @@ def test_the_values_of_what_is_selected_come_before_larger_ones() -> None:
     model.tag_only([model.rods["CA"]], Selected)
     texts = picture_of(model, all_diagrams=True).texts
     assert texts.index("20.07 kN") < texts.index("−198.0 kN") < texts.index("−28.34 kN")
-
-
-def test_where_a_list_of_all_values_finds_no_room_some_are_listed() -> None:
-    session = Session.open("tower")
-    session.press("q")
-    session.resize(420, 300)
-    session.press("home")
-    session.frame(0.0)
-    hidden, numbered = compose(session.model, session.view, LIGHT, {}).untold
-    assert 0 < hidden < numbered
 
 
 def test_very_short_rods_show_no_values_and_say_so() -> None:
