@@ -82,8 +82,8 @@ class Preview:
     kind: "rod", "force", "distributed force", "moment", "velocity", "hinge", "roller", "pinned", "guided", "clamped",
     "pull" or "box"; "": none. start, end: points of the picture (m); of a box, two opposite corners; of a support, its
     point and towards its ground. label: its value with its unit, or "". along: the ends of the rods that bear it.
-    joints: points (m) where it is joined to members. typed: what is typed of it at the pointer, or "". problem: why that was
-    refused.
+    joints: points (m) where it is joined to members. before: those through which it came to its start. typed: what is typed
+    of it at the pointer, or "". problem: why that was refused.
     """
 
     kind: str
@@ -92,6 +92,7 @@ class Preview:
     label: str = ""
     along: tuple[tuple[Vector, Vector], ...] = ()
     joints: tuple[Vector, ...] = ()
+    before: tuple[Vector, ...] = ()
     typed: str = ""
     problem: str = ""
 
@@ -292,8 +293,9 @@ class View:
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     provisional: why what is shown is no equilibrium, which makes results pale; "": it is one.
     card: a task of a lesson, in place of a model. cuts: rods that are drawn cut. has_units: values of forces tell theirs.
+    near_buckling: rows of rods whose compression is nearly critical: they pulse as a shape swings.
     steady: a hand moves something, so that labels stay beside what they belong to. arrow_scales: of vectors by Field, how
-    much a point of an arrow is that is drawn or dragged.
+    much a point of an arrow is that is drawn or dragged. session: a weak reference to the context that shows it; or None.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -335,6 +337,7 @@ class View:
     free_bodies: bool = False
     shape: Shape | None = None
     swing: float = 1.0
+    near_buckling: tuple[int, ...] = ()
     pointed: Readout | None = None
     pin: Pin | None = None
     fitted: bool = False
@@ -343,6 +346,7 @@ class View:
     aside: Viewport | None = None
     provisional: str = ""
     card: Card | None = None
+    session: Any = None
     cuts: tuple[Cut, ...] = ()
     has_units: bool = True
     steady: bool = False

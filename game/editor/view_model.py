@@ -67,7 +67,7 @@ def show(context: Context, elapsed: float) -> None:
     view.forces_known = solved or context.readiness.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
-    lately = context.document.chronicle.told(elapsed) if context.scene in LIVE else ""
+    lately = context.document.chronicle.told(elapsed) if context.mode in LIVE else ""
     offer = None
     if context.notice:
         lasting = [context.notice]
@@ -104,11 +104,13 @@ def show(context: Context, elapsed: float) -> None:
     view.heading = tr(scene.heading)
     view.provisional = _provisional(context)
     view.shape = context.document.shapes.shown or (statics.motion if solved else None)
-    view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
+    view.near_buckling = context.document.shapes.near_buckling(elapsed)
+    moves = view.shape is not None or view.near_buckling
+    view.swing = context.document.shapes.swing(elapsed) if moves else 1.0
     _show_readouts(context)
     _point_out(context)
     drawing = tr(context.gesture.hint) if context.gesture is not None else _hint_of_tool(context)
-    drawing = drawing if context.scene in LIVE else ""
+    drawing = drawing if context.mode in LIVE else ""
     view.status = Status(
         time=None if solved else context.time,
         speed=context.document.live.clock.shown_pace if context.busy else 0.0,
@@ -258,7 +260,7 @@ def _flashes(context: Context) -> NDArray[np.float64]:
 def _preview(context: Context) -> Preview | None:
     try:
         if context.gesture is None:
-            return _pointed_at(context, context.view.pixel) if context.scene in LIVE else None
+            return _pointed_at(context, context.view.pixel) if context.mode in LIVE else None
         gesture = context.gesture
         if not (isinstance(gesture, Drawing) and gesture.typed):
             return gesture.preview(context, context.view.pixel)

@@ -449,7 +449,10 @@ class DrawVelocity(DrawArrow):
 
 
 class DrawElement(Drawing):
-    """An element of a mod's kind with two points, from one to the other."""
+    """An element of a mod's kind, from one of its points to the next.
+
+    placed: its points (m) before the one where the present piece begins.
+    """
 
     kind: ClassVar[type[Handle]]
     key: ClassVar[str]
@@ -461,17 +464,38 @@ class DrawElement(Drawing):
 
     def __init__(self, context: Context, origin: Particle | Vector) -> None:
         super().__init__(context, origin)
-        self.hint = tr(
-            "{element}: click where it ends (or {key})     Esc cancel",
-            element=tr(self.kind.noun),
-            key=self.key.upper(),
-        )
+        self.placed: list[Vector] = []
+        named = {"element": tr(self.kind.noun), "key": self.key.upper()}
+        if self.kind.points[2:]:
+            self.hint = tr("{element}: click its further points (or {key})     Esc cancel", **named)
+        else:
+            self.hint = tr("{element}: click where it ends (or {key})     Esc cancel", **named)
 
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
         if context.view.strip.contains(pixel):
             return None
         return cls(context, snapped_to_points(context.model, context.view, pixel))
+
+    @classmethod
+    def use(cls, context: Context, pixel: Vector) -> None:
+        """The action of the tool; an element with one point is where it is clicked."""
+        if cls.kind.points[1:]:
+            super().use(context, pixel)
+        elif context.view.strip.contains(pixel):
+            take_up(context, cls.tool)
+        else:
+            point = snapped_to_points(context.model, context.view, pixel)
+            cls._make(context, [point], written.place(point, written.DIGITS))
+
+    @classmethod
+    def _make(cls, context: Context, points: list[Vector], said: str) -> None:
+        with context.model.transaction(tr("new {noun}", noun=tr(cls.kind.noun))):
+            [made] = context.model.create(
+                cls.kind, 1, **{name: [at] for name, at in zip(cls.kind.points, points, strict=True)}
+            )
+        context.select(made)
+        tell(context, said, made)
 
     def drop(self, context: Context, pixel: Vector) -> None:
         start, end = self.start(context), self._ending(context, pixel)
@@ -480,14 +504,19 @@ class DrawElement(Drawing):
                 "The {element} would begin and end at the same point; click another point.",
                 element=tr(self.kind.noun),
             )
-        first, last = self.kind.points
-        [made] = context.model.create(self.kind, 1, **{first: [start], last: [end]})
-        context.select(made)
-        tell(context, _length_and_angle(start, end), made)
+        points = [*self.placed, start, end]
+        if len(points) < len(self.kind.points):
+            self.placed, self.origin, self.typed = points[:-1], end, ""
+            return
+        self.placed = []
+        self._make(context, points, _length_and_angle(start, end))
+
+    def following(self, context: Context) -> Drawing | None:
+        return self if self.placed else None
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         start, end = self.start(context), self._ending(context, pixel)
-        return Preview("rod", start, end, _length_and_angle(start, end))
+        return Preview("rod", start, end, _length_and_angle(start, end), before=tuple(self.placed))
 
     def _ending(self, context: Context, pixel: Vector) -> Vector:
         return self.end_typed(context, snapped_to_points(context.model, context.view, pixel))

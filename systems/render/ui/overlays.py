@@ -251,6 +251,7 @@ MEANINGS = {
     "utilisation": marked("utilisation 0 to 100 %"),
     "axial utilisation": marked("utilisation 0 to 100 %, of N alone where the depth is unknown"),
     "first": marked("first to yield"),
+    "near buckling": marked("pulses: compression above 0.8 of the critical"),
     "slack": marked("slack cable"),
     "load": marked("load"),
     "reaction": marked("reaction"),
@@ -363,9 +364,12 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
     if name in _SCALES:
         return scale_bar(theme, x, y, width, u)
     in_ink = ("slack", "hinge", "spring", "inextensible", "moment", "shear", "velocity", "inertia")
-    drawn_in = {"first": "yielding", "plastic hinge": "yielding", "deflected": "sketch"} | dict.fromkeys(
-        in_ink, "ink"
-    )
+    drawn_in = {
+        "first": "yielding",
+        "near buckling": "compression",
+        "plastic hinge": "yielding",
+        "deflected": "sketch",
+    } | dict.fromkeys(in_ink, "ink")
     colour = getattr(theme, drawn_in.get(name, name))
     ends = np.array([[x, y]]), np.array([[x + width, y]])
     if name == "hinge":
@@ -380,7 +384,7 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
         return [Stamps("spiral", ends[0] + [width / 2, 0.0], 6.0 * u, u, theme.ink, theme.hollow)]
     if name in ("load", "reaction", "inertia", "velocity"):
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
-    if name == "first":
+    if name in ("first", "near buckling"):
         return [Strokes(*ends, 9.0 * u, faded(colour, HALO_OPACITY))]
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]
