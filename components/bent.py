@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from pinjoint.components.cases import Acting
 from pinjoint.components.derived import (
+    HALF_SINE,
     all_slopes,
     chord_rotation,
     cubic,
@@ -33,7 +34,6 @@ AXIAL, MOMENT, SHEAR = DIAGRAMS
 FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn of it
 _MOST_PIECES = 32  # of a drawn rod
 _LARGEST = 1e6  # pieces that a rod would have to be cut into; such are left out
-_HALF_SINE = 3.2 * np.array([0.0, 1.0, 0.0, -2.0, 1.0])  # sin πξ, but for 0.001
 _STEEP, _STEEPEST = 0.05, 2.5  # rad, slopes from which on tangents are drawn truly, and up to which
 
 
@@ -264,14 +264,15 @@ def _found(model: Model) -> tuple[_State, Kinks]:
     slopes = np.where((rods.bending_stiffness > 0.0)[:, None], length[:, None] * slopes, 0.0)
     bow = between.sags(left, rods.rest_length, rods.bending_stiffness).plus(cubic(*slopes.T))
     if has_struts(model):
-        bow = bow.plus(np.outer(rods.lateral_deflection, _HALF_SINE))
+        bow = bow.plus(np.outer(rods.lateral_deflection, HALF_SINE))
     return _State(length, left, slopes, bow), between
 
 
 def inner_forces(model: Model, rows: Rows, quantity: str) -> Curves:
     """N, V (kN) or M (kN·m) along some rods; at their ends the computed columns.
 
-    M as in `moments_along`, with what acts between the ends and, but for first-order theory, the cubic deflection v.
+    M as in `moments_along`, with what acts between the ends, N × the half sine of struts and, but for first-order theory,
+    N × the cubic deflection v.
     """
     rods, (state, between) = model.rods, _states(model)
     name = {AXIAL: "end_axial_force", SHEAR: "shear", MOMENT: "bending_moment"}[quantity]
@@ -279,6 +280,8 @@ def inner_forces(model: Model, rows: Rows, quantity: str) -> Curves:
     if quantity == MOMENT:
         thrust = 0.0 if model.first_order else rods.axial_force[:, None]
         found = moments_along(ends, between, state.left, state.length, thrust * cubic(*state.slopes.T))
+        if has_struts(model):
+            found = found.plus(np.outer(rods.axial_force * rods.lateral_deflection, HALF_SINE))
         return found.some(rows)
     x, y = state.left.T
     direction = state.left if quantity == SHEAR else np.stack([-y, x], axis=1)

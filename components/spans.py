@@ -273,9 +273,12 @@ class Curves:
         return len(self.polynomials)
 
     def plus(self, polynomials: Column) -> Curves:
-        """With these polynomials added, of as many coefficients or fewer."""
-        found = self.polynomials.copy()
-        found[:, : polynomials.shape[1]] += polynomials
+        """With these polynomials added."""
+        found, added = self.polynomials, polynomials
+        if found.shape[1] < added.shape[1]:
+            found, added = added, found
+        found = found.copy()
+        found[:, : added.shape[1]] += added
         return Curves(found, *self._kinks)
 
     def times(self, factor: float) -> Curves:

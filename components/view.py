@@ -82,8 +82,8 @@ class Preview:
     kind: "rod", "force", "distributed force", "moment", "velocity", "hinge", "roller", "pinned", "guided", "clamped",
     "pull" or "box"; "": none. start, end: points of the picture (m); of a box, two opposite corners; of a support, its
     point and towards its ground. label: its value with its unit, or "". along: the ends of the rods that bear it.
-    joints: points (m) where it is joined to members. typed: what is typed of it at the pointer, or "". problem: why that was
-    refused.
+    joints: points (m) where it is joined to members. before: those through which it came to its start. typed: what is typed
+    of it at the pointer, or "". problem: why that was refused.
     """
 
     kind: str
@@ -92,6 +92,7 @@ class Preview:
     label: str = ""
     along: tuple[tuple[Vector, Vector], ...] = ()
     joints: tuple[Vector, ...] = ()
+    before: tuple[Vector, ...] = ()
     typed: str = ""
     problem: str = ""
 
@@ -281,8 +282,8 @@ class View:
     1 to −1, that is drawn now.
     names: all elements have their names, not only few.
     utilisation: rods show in colours how much of their strength they bear.
-    envelope: diagrams show what is most and least in all combinations. enveloped: which that is, a
-    statics.envelope.Envelope; None: they do not.
+    envelope: diagrams show what is most and least in all combinations, or while a force moves along a path of rods.
+    enveloped: which that is, a statics.envelope.Envelope; None: they do not.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     free_bodies: rods and joints are drawn apart, with the forces on each.
     wanted: which of our own a person switched on among them: theory beside the run, its energy, its events.
@@ -292,8 +293,9 @@ class View:
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     provisional: why what is shown is no equilibrium, which makes results pale; "": it is one.
     card: a task of a lesson, in place of a model. cuts: rods that are drawn cut. has_units: values of forces tell theirs.
+    near_buckling: rows of rods whose compression is nearly critical: they pulse as a shape swings.
     steady: a hand moves something, so that labels stay beside what they belong to. arrow_scales: of vectors by Field, how
-    much a point of an arrow is that is drawn or dragged.
+    much a point of an arrow is that is drawn or dragged. session: a weak reference to the context that shows it; or None.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -328,12 +330,14 @@ class View:
     largest_force: float = 0.0
     utilisation: bool = False
     envelope: bool = False
+    path: tuple[Rod, ...] = ()
     enveloped: Any = None
     names: bool = False
     wanted: frozenset[str] = frozenset()
     free_bodies: bool = False
     shape: Shape | None = None
     swing: float = 1.0
+    near_buckling: tuple[int, ...] = ()
     pointed: Readout | None = None
     pin: Pin | None = None
     fitted: bool = False
@@ -342,6 +346,7 @@ class View:
     aside: Viewport | None = None
     provisional: str = ""
     card: Card | None = None
+    session: Any = None
     cuts: tuple[Cut, ...] = ()
     has_units: bool = True
     steady: bool = False

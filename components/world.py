@@ -6,7 +6,7 @@ import itertools
 import weakref
 from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from typing import Any, NoReturn, Protocol, TypeVar, overload
 
@@ -231,7 +231,7 @@ class World:
             self._check_names(table, column.tolist(), instead_of=table._columns["name"][rows].tolist())
         if same(table.current(field.name)[rows], column):
             return
-        with self.transaction(tr("{title} of {element}", title=field.named(), element=first)):
+        with self._edit(tr("{title} of {element}", title=field.named(), element=first)):
             self.execute(Assign(table.name, field.name, tuple(ids), column))
             table.kind.after_change(table, rows, {field.name})
 
@@ -402,7 +402,7 @@ class World:
             checked[field.name] = self._checked(field, values, count, where)
         if names is not None:
             self._check_names(table, checked["name"].tolist())
-        with self.transaction(tr("new {noun}", noun=tr(kind.noun))):
+        with self._edit(tr("new {noun}", noun=tr(kind.noun))):
             self.execute(Create(kind, count, kind.completed(checked, count)))
             kind.after_change(table, np.arange(table.count - count, table.count), table.fields)
         return table.handles[table.count - count :]
@@ -412,7 +412,7 @@ class World:
         table, _, field = name.partition(".")
         entities = tuple(self.tables[table].entities.tolist())
         title = self.tables[table].fields[field].named()
-        with self.transaction(tr("{title} of all {table}", title=title, table=tr(table))):
+        with self._edit(tr("{title} of all {table}", title=title, table=tr(table))):
             self.execute(Assign(table, field, entities, np.asarray(values).copy()))
 
     def delete(self, handles: Iterable[Handle]) -> None:
@@ -426,7 +426,7 @@ class World:
                 )
             doomed += table.entities[rows].tolist()
         if doomed:
-            with self.transaction(tr("delete")):
+            with self._edit(tr("delete")):
                 self.execute(Delete(tuple(doomed)))
 
     def execute(self, command: Command) -> None:
@@ -450,16 +450,20 @@ class World:
         elif self.on_command is not None:
             self.on_command(inverse)
 
+    def _edit(self, title: str) -> AbstractContextManager[None]:
+        """A transaction that has no title of its own inside of another one."""
+        return self.transaction(title if self._open is None else "")
+
     @contextmanager
-    def transaction(self, title: str, *, shows_state: bool = True) -> Iterator[None]:
+    def transaction(self, title: str, *, of_mod: bool = False) -> Iterator[None]:
         """Make all commands inside one entry of the log; if one raises, none of them happened. Inside, the state is shown.
 
         title: said by `tr`, or marked: it is shown in the language that is present then.
-        shows_state: if False, what was shown is shown inside, too.
+        of_mod: what was shown is shown inside, too, and the only transaction inside keeps its title.
         """
         inverses: list[Command] = []
         outer, self._open = self._open, inverses
-        with self.own_state() if shows_state else nullcontext():
+        with nullcontext() if of_mod else self.own_state():
             try:
                 yield
             except BaseException:
@@ -468,7 +472,9 @@ class World:
                 self._open = outer
                 raise
             self._open = outer
-            if inverses:
+            if of_mod and len(inverses) == 1 and isinstance(inverses[0], Group) and inverses[0].title:
+                self._report(inverses[0])
+            elif inverses:
                 self._report(Group(tuple(reversed(inverses)), title))
 
     def apply(self, command: Command) -> Command:

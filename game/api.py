@@ -73,6 +73,7 @@ from pinjoint.mods import FAULTS as FAULTS
 from pinjoint.mods import App as App
 from pinjoint.mods import Mod as Mod
 from pinjoint.mods import ModError as ModError
+from pinjoint.mods import unload as unload
 from pinjoint.paths import PathError as PathError
 from pinjoint.systems.base import ACCOUNTS as ACCOUNTS
 from pinjoint.systems.base import EVENT_INTERVAL as EVENT_INTERVAL

@@ -2,27 +2,33 @@
 
 from __future__ import annotations
 
+import sys
+import tempfile
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from fnmatch import filter as matching
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pinjoint.components.additions import Component
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import MADE, SAVED, Column, Field, FieldError, Role, same
+from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.load import HISTORIES
 from pinjoint.components.mistake import Explained, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.settings import PAUSE
-from pinjoint.components.wording import missing
+from pinjoint.components.table import fields_of
+from pinjoint.components.wording import missing, nearest
 from pinjoint.documents import models
 from pinjoint.documents.library import data_in
 from pinjoint.editor.frame import Frame
-from pinjoint.editor.scenes import all_scenes
+from pinjoint.editor.scenes import Scene, all_scenes
 from pinjoint.interrupts import is_persons
 from pinjoint.mods.loading import load_all
 from pinjoint.mods.mod import LOG, Mod
@@ -34,6 +40,8 @@ from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.binding import KERNELS, PROVIDED, Bound, ProgramError, bind
 from pinjoint.systems.program.compiler import Choice
 from pinjoint.systems.program.faults import problem_of
+from pinjoint.systems.program.identity import reached_from
+from pinjoint.systems.program.interpreter import plain_function
 from pinjoint.systems.program.near_pairs import pairs_within
 from pinjoint.systems.program.program import MOTION, TURNING
 from pinjoint.systems.program.writer import read_sources
@@ -47,6 +55,11 @@ SIZES = ((640, 480, 1.0), (160, 120, 2.0))  # pixels, and pixels to a point, of 
 SCALES = (1.0, 1e4, 1e-4)  # by which a person may zoom
 PATIENCE = 30.0  # s that some steps of the small model may take
 NEARBY = 1e-5  # of a distance, over which the slope of a potential is taken
+NEAR = 0.8  # of the letters, from which on a name is a misspelt one
+NAMING = {  # what declares names, and names of what
+    **dict.fromkeys(("scenes", "sources", "targets"), marked("scenes")),
+    **dict.fromkeys(("before", "after", "systems"), marked("systems")),
+}
 UNDECLARED = marked("{name}: it changed {column}, which it does not declare in writes or adds.")
 ASKED = marked("{name}: needs(model) changed {column}; it must not change the model.")
 NOT_REPEATED = marked("{name}: run twice, it gives another {column}; nothing may depend on chance.")
@@ -341,12 +354,20 @@ class Trial:
 
     def _try_all(self) -> None:
         systems = [s for s in (*all_systems(), *INTEGRATORS.values()) if s.mod is self.mod]
+        scenes = [scene for scene in all_scenes() if scene.mod is self.mod]
         for system in systems:
             with self._part():
                 self._read(system)
+        with self._part():
+            self._check_names([*systems, *scenes])
+        root = self.mod.module
+        for name in [name for name in sys.modules if name == root or name.startswith(f"{root}.")]:
+            for made in vars(sys.modules[name]).values():
+                if isinstance(made, type) and made.__module__ == name:
+                    self._check_spelling(made)
         if self.found:
             return  # a run would only fail for the same reasons
-        for scene in (PAUSE, SIMULATION, *(scene.name for scene in all_scenes() if scene.mod is self.mod)):
+        for scene in (PAUSE, SIMULATION, *(scene.name for scene in scenes)):
             with self._part():
                 self._live_in(scene)
         for action, binding in ACTIONS.bound():
@@ -386,7 +407,7 @@ class Trial:
 
     def _read(self, system: System) -> None:
         """Compile a system's kernels by themselves, and look for the columns that it names."""
-        model = models.load(EVERYTHING)
+        model = _sample(self.mod)
         for name in (*system.reads, *system.writes, *system.adds):
             table, _, column = name.partition(".")
             if column and (table not in model.tables or column not in model.tables[table].fields):
@@ -398,8 +419,68 @@ class Trial:
             read_sources([system])
         elif isinstance(system, Law | Commit | Event):
             for kernel in KERNELS:
-                if getattr(system, kernel, "") and (problem := problem_of(bind(system, model, kernel), model)):
-                    self._note(problem)
+                if getattr(system, kernel, ""):
+                    self._compile(system, kernel, model)
+
+    def _compile(self, system: StepSystem, kernel: str, model: Model) -> None:
+        try:
+            bound = bind(system, model, kernel)
+        except ProgramError:
+            if system.needs(model):
+                raise
+            untried = tr("{name} was not tried: the model of this check does not need it.", name=system.name)
+            self.mod.notes += [] if untried in self.mod.notes else [untried]  # `arrays` may have nothing for it
+            return
+        if any("print" in plain_function(one).__code__.co_names for one in reached_from([bound.function])):
+            self._note(tr("The kernel of {system} prints, in every step; remove that.", system=system.name))
+        elif problem := problem_of(bound, model):
+            self._note(problem)
+
+    def _check_names(self, declared: Iterable[System | Scene]) -> None:
+        """Look for the scenes and systems that systems and scenes name."""
+        from pinjoint.app import window_systems  # imports pygame
+
+        with tempfile.TemporaryDirectory() as folder:
+            plan = Session(Model(), systems=window_systems(Path(folder))).plan(PAUSE)
+        active = [system.name for systems in plan.phases.values() for system in systems]
+        known = {"scenes": [scene.name for scene in all_scenes()], "systems": [*plan.left_out, *active]}
+        families = {name.partition(".")[0] for name in known["systems"]}
+        for made in declared:
+            for attribute, group in NAMING.items():
+                for name in getattr(made, attribute, None) or ():
+                    of_others = attribute in ("before", "after") and name.partition(".")[0] not in families
+                    if matching(known[group], name) or (of_others and not nearest(name, known[group], NEAR)):
+                        continue  # a mod that is not loaded may have it
+                    self._note(joined([f"{made.name}, {attribute}:", missing(group, name, known[group])]))
+
+    def _check_spelling(self, made: type) -> None:
+        """Look in a class for what is nearly what its role declares, and for Fields that are none."""
+        role = next(base for base in made.__mro__ if base.__module__.partition(".")[0] != self.mod.module)
+        if role is object:
+            return
+        hints = {name for base in role.__mro__ for name in vars(base).get("__annotations__", ())}
+        declared, own = {*dir(role), *hints}, dict[str, Any]()
+        for base in reversed(made.__mro__[: made.__mro__.index(role)]):
+            own |= {name: value for name, value in vars(base).items() if name[0] != "_"}
+        free = {name for name in declared - own.keys() if name[0] != "_"}
+        for name in [
+            name for name, value in own.items() if not isinstance(value, Field) and name not in declared
+        ]:
+            turned = [other for other in free if sorted(other) == sorted(name)]
+            if near := turned[0] if turned else nearest(name, free, NEAR):
+                told = {"kind": made.__name__, "name": name, "near": near}
+                self._note(tr("{kind}.{name} means nothing; did you mean '{near}'?", **told))
+        if not issubclass(made, Component | Handle):
+            return
+        for name, hint in vars(made).get("__annotations__", {}).items():
+            plain = not isinstance(own.get(name), Field) and name not in hints and "ClassVar" not in str(hint)
+            if plain and name[0] != "_" and not name.isupper():
+                told = {
+                    "kind": made.__name__,
+                    "name": name,
+                    "form": f'{name}: Field[float] = Field("…", doc="…")',
+                }
+                self._note(tr("{kind}.{name} is not a Field; write {form}.", **told))
 
     # --- what must be tried ----------------------------------------------------------------------------
 
@@ -491,7 +572,8 @@ def _sample(mod: Mod) -> Model:
     for called, kind in EXTENSIONS.kinds.items():
         if called.partition(".")[0] == mod.name:
             places = {point: (0.3 * n, -0.5) for n, point in enumerate(kind.points)}
-            model.create(kind, 1, **places)
+            at = {f.name: [range(2) if f.shape else 0] for f in fields_of(kind) if f.references is not None}
+            model.create(kind, 1, **places, **at)
     for name, history in HISTORIES.items():
         if history.mod is mod:
             model.create(type(model.loads[0]), 1, on=2, force=(0.1, 0.0), history={"kind": name})

@@ -51,7 +51,8 @@ def chosen(model: Model, curve: Curve, names: Sequence[str]) -> list[tuple[str, 
 
 
 def plot(model: Model, curve: Curve, names: Sequence[str] = ()) -> Plot:
-    """The load factor against what is named, or the displacement that grows most, with dots at limit points, where it turns.
+    """The load factor against what is named, or the displacement that grows most, with dots at limit points, where it turns,
+    and where plastic hinges form.
 
     Raises NotFound for other names, and WrongValue for quantities of several units.
     """
@@ -60,7 +61,10 @@ def plot(model: Model, curve: Curve, names: Sequence[str] = ()) -> Plot:
     titles, units, values = zip(*of, strict=True)
     if len({*units}) > 1:
         raise WrongValue("{names} have different units; plot them one by one.", names=listed(titles))
-    turns = np.flatnonzero(np.diff(np.sign(np.diff(factor)))) + 1
+    hinges = [event.load_factor for event in curve.events if event.kind == "hinge"]
+    turns = np.union1d(
+        np.flatnonzero(np.diff(np.sign(np.diff(factor)))) + 1, np.flatnonzero(np.isin(factor, hinges))
+    )
     dots = np.concatenate([np.column_stack([x, factor])[turns] for x in values])
     curves = tuple((title, x, factor) for title, x in zip(titles, values, strict=True))
     return Plot(f"{', '.join(titles)} ({units[0]})", tr("load factor"), curves, dots=dots)

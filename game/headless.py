@@ -260,16 +260,17 @@ class Headless(Context):
             choose(acting, case, combination)
         return self.document.statics.settled(theory, load_factors, acting)
 
-    def envelope(self, *combinations: str, theory: str | None = None) -> Envelope:
+    def envelope(self, *combinations: str, theory: str | None = None, path: Sequence[str] = ()) -> Envelope:
         """The least and the most of N, V, M, reactions and displacements in some combinations of load cases, and in which.
 
         None named: in all of settings.combinations; theory None: as the settings say. Changes nothing. At the stations
         shares["M"] (rods, s) along rods, forces["M"].values (2, rods, s) are the least and the most, in kN, kN·m, and
         .governing the number of the combination in `combinations`, −1 where all are alike; so are reaction and displacement
         (2, particles, 3), with moments and rotations. extremes("M", row): both of a rod, with distance and combination.
-        without: combinations without equilibrium, and why. Raises ValueError, NoEquilibrium where none has one.
+        without: combinations without equilibrium, and why. path: names of rods, along which a force of 1 kN moves instead,
+        downwards; combinations are then where it stands. Raises ValueError, NoEquilibrium where none has one.
         """
-        return self.document.statics.envelope(combinations, theory)
+        return self.document.statics.envelope(combinations, theory, path)
 
     def force_method(self, *released: str) -> ForceSolution:
         """The static unknowns of these names, such as "AC", "A.y" or "AB.start", by the force method; changes nothing.

@@ -121,11 +121,10 @@ def _of_rods(model: Model, length: Array, force: float, moment: float) -> Table:
             columns.append(_column(f"{key}_at", tr("at x"), CM, places[:, side]))
         columns.append(_column("deflection", tr("deflection"), MOVED, bows))
         if has_plastic_moments(model):
-            columns += _parts(
-                "plastic_rotation", tr("plastic rotation"), ENDS, _MRAD, rods.plastic_rotation, 0.0
-            )
-            title = tr("M_p reduced by N")
-            columns.append(_column("reduced_plastic_moment", title, _KNM, reduced_plastic_moment(model)))
+            columns += _parts("plastic_rotation", "θ_p", ENDS, _MRAD, rods.plastic_rotation, 0.0)
+            if has_strength(model):
+                title = tr("M_p reduced by N")
+                columns.append(_column("reduced_plastic_moment", title, _KNM, reduced_plastic_moment(model)))
     else:
         columns.append(_column("axial_force", "N", _KN, rods.axial_force, force))
     if has_strength(model):

@@ -234,7 +234,7 @@ class Session(Headless):
         binding = ACTIONS.offer(tool.action, self.scene)
         if binding is not None and not self.notice:
             scenes = listed([tr(scene) for scene in binding.scenes])
-            here = self.scene in binding.scenes
+            here = EXTENSIONS.acts_in(self.scene, binding.scenes)
             said = marked("{action}: there is nothing here yet that it could act on.")
             said = said if here else marked("{action}: only in {scenes}.")
             self.notice = tr(said, action=begun(tool.title), scenes=scenes)

@@ -12,7 +12,7 @@ from reportlab.platypus import CondPageBreak, Flowable, KeepTogether
 from pinjoint.collapse_steps import collapse_steps
 from pinjoint.components.bent import AXIAL
 from pinjoint.components.cases import acting
-from pinjoint.components.language import joined, listed, tr
+from pinjoint.components.language import begun, joined, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
@@ -39,13 +39,14 @@ class NoSheet(Mistake, ValueError):
 
 
 def sheet(
-    model: Model, theory: str = FIRST_ORDER, shapes: Sequence[Shape] = (), *, enveloped: bool = False
+    model: Model, theory: str = FIRST_ORDER, shapes: Sequence[Shape] = (), path: Sequence[str] | None = None
 ) -> bytes:
     """The sheet of a model, solved from its undeformed beginning, as a PDF file. Raises NoSheet.
 
-    shapes: drawn over it, too, such as influence lines. enveloped: with the envelope of all combinations, or ValueError.
+    shapes: drawn over it, too, such as influence lines. path: of rods, along which a force moves whose envelope is
+    drawn; (): that of all combinations, or ValueError.
     """
-    solved = Solved(model, theory, enveloped=enveloped)
+    solved = Solved(model, theory, path)
     return as_paper(
         solved.title, partial(contents, solved, shapes=shapes), f"Pinjoint · {solved.title}", LAYOUTS[:2]
     )
@@ -54,7 +55,7 @@ def sheet(
 class Solved:
     """A copy of a model that shows its static solution, whatever the model shows, with the tables of it."""
 
-    def __init__(self, model: Model, theory: str, *, enveloped: bool = False) -> None:
+    def __init__(self, model: Model, theory: str, path: Sequence[str] | None = None) -> None:
         self.title = tr(model.title) if model.title else tr("Structure")
         if not model.rods.count:
             raise NoSheet("The model has no rods, so there is no structure to solve.")
@@ -74,7 +75,7 @@ class Solved:
         self.steps = collapse_steps(copy, limit) if limit and theory == FIRST_ORDER else None
         copy.show(statics)
         self.results = Results.of(copy)
-        self.envelope = statics.envelope() if enveloped else None
+        self.envelope = None if path is None else statics.envelope(path=path)
 
 
 def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> list[Flowable]:
@@ -96,7 +97,7 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
     if (envelope := solved.envelope) is not None:
         for quantity, title in diagram_titles().items():
             if bends(model) or quantity == AXIAL:
-                caption = tr("Envelope of {names}: {title}", names=listed(envelope.combinations), title=title)
+                caption = f"{begun(envelope.said)}: {title}"
                 figures.append(draw(caption, diagrams=quantity, enveloped=envelope))
     large = [block for block in figures if block[1][0].fills_page]
     tables = {

@@ -19,6 +19,7 @@ from fnmatch import fnmatchcase
 from graphlib import CycleError, TopologicalSorter
 from typing import Any
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
 from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
@@ -184,7 +185,7 @@ class Schedule:
         """True if a system acts in a scene: it names the scene, or the scene names it."""
         known = self._active.get((system, scene))
         if known is None:
-            known = system.scenes is None or scene in system.scenes
+            known = system.scenes is None or EXTENSIONS.acts_in(scene, system.scenes)
             known = known or any(fnmatchcase(system.name, wanted) for wanted in self._wanted.get(scene, ()))
             self._active[system, scene] = known
         return known

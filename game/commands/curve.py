@@ -164,11 +164,22 @@ def _point(model: Model, curve: Curve, number: int) -> dict[str, Any]:
 
 
 def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
-    """The data of a curve as rows, one for every equilibrium, headings first."""
+    """The data of a curve as rows, one for every equilibrium, headings first; the last tells of plastic hinges and collapse.
+
+    That is there only if one forms, and of other events none, which lie between equilibria.
+    """
+    factors = [float(factor) for factor in found["load_factor"]]
+    told = dict.fromkeys(factors, "")
+    for event in found["events"]:
+        if event["load_factor"] in told and event["kind"] in ("hinge", "collapse"):
+            said = " ".join([event["kind"], *filter(None, [event.get("particle")])])
+            told[event["load_factor"]] = ", ".join(filter(None, [told[event["load_factor"]], said]))
     columns = {
         f"{name} ({unit})": values
         for quantity, unit in UNITS.items()
         for name, values in found.get(quantity, {}).items()
     }
+    if any(told.values()):
+        columns[marked("event")] = [told[factor] for factor in factors]
     yield marked("load factor"), marked("stable"), *columns
     yield from zip(found["load_factor"], found["stable"], *columns.values(), strict=True)

@@ -29,7 +29,11 @@ def answer(options: Namespace, model: Model, analysis: Analysis) -> int:
 
     factors, permanent = analysis.load_factors or (1.0,), Start.present(model).permanent
     try:
-        found = Envelope.of(model, (), analysis.theory, factors, permanent)
+        found = (
+            Envelope.under_moving_force(model, options.path)
+            if options.path
+            else Envelope.of(model, (), analysis.theory, factors, permanent)
+        )
     except NoEquilibrium as reason:
         tell(str(reason))
         return NOT_ANSWERED
@@ -62,8 +66,9 @@ def answer(options: Namespace, model: Model, analysis: Analysis) -> int:
             name: {part: of_bounds(getattr(found, part), row) for part in _PARTS} for row, name in particles
         },
     }
-    shown = [name for row, name in particles if supported(model)[row].any()]
-    write_result(options, data, _rows, lambda found: _lines(found, shown))
+    held = supported(model).any(axis=1)
+    shown = [name for row, name in particles if held[row]]
+    write_result(options, data, _rows, lambda data: _lines(data, shown, found.said))
     return NOT_ANSWERED if found.without else ANSWERED
 
 
@@ -84,10 +89,9 @@ def _rows(data: Mapping[str, Any]) -> Iterator[Row]:
                     yield "particle", name, f"{part}_{axis}", "", bound, value, unit, combination or ""
 
 
-def _lines(data: Mapping[str, Any], supports: list[str]) -> Iterator[str]:
+def _lines(data: Mapping[str, Any], supports: list[str], said: str) -> Iterator[str]:
     """The extremes of forces along rods, and of reactions, to read."""
-    combinations = ", ".join(data["combinations"])
-    yield tr("{model}: envelope of {combinations}", model=data["model"], combinations=combinations)
+    yield f"{data['model']}: {said}"
     for name, reason in data["without"].items():
         yield tr("{combination} has no solution: {reason}", combination=name, reason=reason)
     yield ""

@@ -12,10 +12,11 @@ from pinjoint.commands.analysis import Analysis
 from pinjoint.commands.arguments import Parser, UsageError, count, flag, numbers, option, positive, times
 from pinjoint.commands.progress import Progress, follow
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.language import tr
+from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.settings import INTEGRATORS
 from pinjoint.components.theory import EXACT, THEORIES
+from pinjoint.components.wording import missing
 from pinjoint.documents import models
 from pinjoint.documents.format import missing_mods
 from pinjoint.paths import apply_override
@@ -137,6 +138,22 @@ def add_analysis(parser: argparse.ArgumentParser) -> None:
         positive,
         default=DEFAULT_LIMIT,
     )
+
+
+def add_envelope(parser: argparse.ArgumentParser) -> None:
+    """Add the options of envelopes in statics, of combinations or of a force along a path."""
+    flag(parser, "--envelope", "of statics: the least and the most in all combinations of load cases")
+    option(parser, "--path ROD", "the same while one force of 1 kN downwards moves along these rods", nargs="+")
+
+
+def path_of(options: argparse.Namespace, model: Model) -> list[str] | None:
+    """The rods along which a force moves, of which the envelope is wanted; []: that of combinations; None: none.
+
+    Raises UsageError for unknown ones.
+    """
+    if unknown := [name for name in options.path or () if name not in model.rods]:
+        raise UsageError(missing(marked("rods"), unknown[0], model.rods.names))
+    return options.path or ([] if options.envelope else None)
 
 
 def analysis_of(options: argparse.Namespace) -> Analysis:

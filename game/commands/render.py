@@ -15,7 +15,15 @@ import numpy as np
 from pinjoint import pictures
 from pinjoint.commands.analysis import FOUND
 from pinjoint.commands.arguments import Parser, UsageError, flag, option, positive
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, session_of
+from pinjoint.commands.options import (
+    ANSWERED,
+    NOT_ANSWERED,
+    add_envelope,
+    add_model,
+    add_theory,
+    path_of,
+    session_of,
+)
 from pinjoint.commands.output import writable, writing
 from pinjoint.components.bent import MOMENT
 from pinjoint.components.settings import DIAGRAMS
@@ -132,7 +140,7 @@ def _parser() -> Parser:
         "--influence NAME",
         "also draw an influence line: of AB, AB.start, AB.end, AB.shear, AB.M@1.5 (also N, V; 50 %%), A.y or B.rotation",
     )
-    flag(parser, "--envelope", "with --static: the envelope of all combinations of load cases")
+    add_envelope(parser)
     option(parser, "--theme", "the colours; default light", choices=theme_names(), default="light")
     option(
         parser,
@@ -171,7 +179,7 @@ def _check_static(options: argparse.Namespace) -> None:
     """Raise UsageError where an option does not go with statics."""
     shapes = {True: "--undeformed", False: "--deformed", None: ""}
     option = "--theory" if options.theory is not None else shapes[options.undeformed]
-    option = option or "--envelope" * options.envelope
+    option = option or "--path" * bool(options.path) or "--envelope" * options.envelope
     if option and not options.static:
         raise UsageError("{option} works only together with --static; add it.", option=option)
     moving = options.until_rest or options.at is not None or options.output.lower().endswith(".gif")
@@ -208,8 +216,10 @@ def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) 
     status = "time reached"
     if options.static:
         status = _solve(session, options)
-        session.view.envelope = options.envelope
-        if options.envelope and options.diagrams_of is None:
+        path = path_of(options, session.model)
+        session.view.envelope = path is not None
+        session.view.path = tuple(session.rods[name] for name in path or ())
+        if session.view.envelope and options.diagrams_of is None:
             session.view.quantity = MOMENT
     elif options.until_rest:
         status = session.run(until="rest", limit=options.limit)

@@ -14,10 +14,12 @@ from pinjoint.commands.options import (
     NOT_ANSWERED,
     STOPPED,
     add_analysis,
+    add_envelope,
     add_model,
     analysis_of,
     headless_of,
     model_of,
+    path_of,
 )
 from pinjoint.commands.output import Row, add_output, aligned, as_written, writable, write, write_result
 from pinjoint.components.cases import choose
@@ -55,16 +57,17 @@ def command(words: Sequence[str]) -> int:
         parser, "--measure-error", "measure the error by a second run with finer steps, even if that takes long"
     )
     option(parser, "--case NAME", "let one load case act alone")
-    flag(parser, "--envelope", "with --static: the least and the most in all combinations of load cases")
+    add_envelope(parser)
     options = parser.parse_args(words)
     analysis = replace(analysis_of(options), measures_error=options.measure_error)
-    if options.envelope and not options.static:
-        raise UsageError("{option} works only together with --static; add it.", option="--envelope")
+    wanted = "--path" if options.path else "--envelope" * options.envelope
+    if wanted and not options.static:
+        raise UsageError("{option} works only together with --static; add it.", option=wanted)
     if analysis.load_factors is not None:
         model = model_of(options)
         if options.case is not None:
             choose(model, options.case, None)
-        if options.envelope:
+        if path_of(options, model) is not None:
             return envelope.answer(options, model, analysis)
         found, impacts = analysis.settled_in(model, options.model), Impacts(model)
     else:

@@ -4,8 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pinjoint.commands.arguments import Parser, UsageError, flag, option
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_theory, model_of
+from pinjoint.commands.arguments import Parser, UsageError, option
+from pinjoint.commands.options import (
+    ANSWERED,
+    NOT_ANSWERED,
+    add_envelope,
+    add_model,
+    add_theory,
+    model_of,
+    path_of,
+)
 from pinjoint.commands.output import writable, write
 from pinjoint.components.theory import FIRST_ORDER
 
@@ -19,7 +27,7 @@ def command(words: Sequence[str]) -> int:
     option(parser, "--output FILE", "the PDF to write", writable, required=True)
     add_theory(parser, FIRST_ORDER)
     option(parser, "--influence NAME", "draw influence lines, too: see verify --help", nargs="+", default=())
-    flag(parser, "--envelope", "also the envelope of all combinations of load cases")
+    add_envelope(parser)
     options = parser.parse_args(words)
     from pinjoint.documents.influence import Influence  # it imports scipy
     from pinjoint.sheet import sheet  # it imports reportlab
@@ -31,5 +39,5 @@ def command(words: Sequence[str]) -> int:
     except NoEquilibrium as error:
         raise UsageError(str(error), NOT_ANSWERED) from None
     shapes = [line.shape(model) for line in lines]
-    write(sheet(model, options.theory, shapes, enveloped=options.envelope), options.output)
+    write(sheet(model, options.theory, shapes, path_of(options, model)), options.output)
     return ANSWERED

@@ -84,7 +84,7 @@ class OpenDocument:
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
         self.statics = Statics(model, self._permanent_undeformed)
-        self._enveloped: tuple[int, Envelope | None] = -1, None
+        self._enveloped: tuple[object, Envelope | None] = None, None
         self.exaggeration = Exaggeration(model)
         self.chronicle = Chronicle(model, self.simulation)
         self.file = file
@@ -107,12 +107,11 @@ class OpenDocument:
         """True if no time has passed, or restarting took it back."""
         return self.beginning is None or not self.simulation.passed_since(self.beginning)
 
-    @property
-    def envelope(self) -> Envelope:
-        """That of all combinations in statics, found anew after an edit. Raises ValueError."""
-        revision = self.model.newest(Role.DOCUMENT)
-        if self._enveloped[0] != revision or self._enveloped[1] is None:
-            self._enveloped = revision, self.statics.envelope()
+    def envelope(self, path: Sequence[str] = ()) -> Envelope:
+        """That of all combinations in statics, or of a force along a path, found anew after an edit. Raises ValueError."""
+        of = self.model.newest(Role.DOCUMENT), tuple(path)
+        if self._enveloped[0] != of or self._enveloped[1] is None:
+            self._enveloped = of, self.statics.envelope(path=path)
         found = self._enveloped[1]
         assert found is not None
         return found

@@ -31,7 +31,10 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
 LOWEST = 10  # mechanisms, and modes, in the round of `next`
 _LOWEST_BUCKLING = 3  # buckling modes in it
+REST = 0.2  # s without an edit, after which a window compares theories and looks for buckling
 PERIOD = 2.4  # s, in which a shape swings to and fro
+NEAR_BUCKLING = 0.8  # of the compression at which a rod buckles with others, above which it pulses
+_MOST_PULSING = 120  # rods, of which critical loads take a moment only
 _LOWEST_OF_LARGE = 50  # modes of structures that are too large for all
 
 
@@ -48,6 +51,9 @@ class Shapes:
         self._shown: Shape | None = None
         self._revision: tuple[int, object, str] = (-1, None, "")
         self._time = 0.0
+        # The newest edit, how long the hand has rested since, and of which edit the compressions are at which rods buckle.
+        self._rest: tuple[int, float] = (-1, 0.0)
+        self._critical: tuple[int, NDArray[np.float64]] = (-1, np.zeros(0))
 
     @property
     def shown(self) -> Shape | None:
@@ -74,6 +80,20 @@ class Shapes:
         self._time += elapsed * (self._shown is None or self._shown.swings)
         return math.cos(2.0 * math.pi * self._time / PERIOD)
 
+    def near_buckling(self, elapsed: float) -> tuple[int, ...]:
+        """Rows of the rods whose compression is nearly that at which they buckle, once the hand has rested after an edit."""
+        model, newest, rods = self._model, self._model.newest(Role.DOCUMENT), self._model.rods
+        if not 0 < rods.count <= _MOST_PULSING or not rods.bending_stiffness.any():
+            return ()
+        if self._critical[0] != newest:
+            self._rest = newest, elapsed + (self._rest[1] if self._rest[0] == newest else 0.0)
+            if self._rest[1] > REST and (rods.axial_force < 0.0).any():
+                self._critical = newest, _critical_compression(model)
+        if len(self._critical[1]) != rods.count:
+            return ()
+        pressed = -rods.axial_force > NEAR_BUCKLING * self._critical[1]
+        return tuple(np.flatnonzero(pressed).tolist())
+
     def next(self) -> None:
         """Go on to the next: mechanisms, in statics collapse, buckling by its load, modes by their frequency, elsewhere
         collapse, then none. Raises NoShape.
@@ -91,6 +111,21 @@ class Shapes:
             self.show(self._round[after])
         else:
             self.hide()
+
+
+def _critical_compression(model: Model) -> NDArray[np.float64]:
+    """The compression (kN) at which each rod buckles, by itself or with the others of a mode, (rods,); else infinite."""
+    from pinjoint.systems.statics.buckling import Buckling, members
+    from pinjoint.systems.statics.events import NoEquilibrium
+
+    found: NDArray[np.float64] = model.rods.buckling_load.copy()
+    with suppress(NoEquilibrium, ValueError), model.own_state():
+        buckling, member = Buckling.of(model), members(model)
+        for number, (factor, leading) in enumerate(zip(buckling.factors, buckling.leading, strict=True)):
+            taking = np.isfinite(buckling.effective_length) if number == 0 else member == member[leading]
+            compression = -(buckling.dead + factor * buckling.live)
+            found = np.where(taking & (compression > 0.0), np.minimum(found, compression), found)
+    return found
 
 
 def _first_ones(model: Model) -> list[Shape]:

@@ -25,7 +25,7 @@ from pinjoint.components.rod import can_collapse, nodes
 from pinjoint.components.theory import EXACT, FIRST_ORDER
 from pinjoint.components.view import Shape
 from pinjoint.components.world import Shown
-from pinjoint.documents.shapes import last_motion
+from pinjoint.documents.shapes import REST, last_motion
 from pinjoint.systems.statics.behind import Behind
 
 if TYPE_CHECKING:  # statics takes a tenth of a second to import
@@ -38,7 +38,6 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
 PLASTIC = frozenset(("yield", "hinge", "buckling", "plastic mechanism", "collapse"))
 SAID = {FIRST_ORDER: marked("equilibrium, first order"), EXACT: marked("equilibrium, exact")}
 _MOST_COMPARED = 300  # rods, up to which both theories take a moment only
-REST = 0.2  # s without an edit, after which a window compares them
 # Of a frame of a window, for solving: at least and at most (s), and the share of the last one.
 PART, _MOST, _SHARE = 0.03, 0.25, 0.5
 SMALL = 200  # rods, up to which first order is found within the frame
@@ -220,12 +219,18 @@ class Statics:
         factors = settings.load_steps if factors is None else factors
         return settle(model, factors, theory or settings.theory, Start.undeformed(model, self._permanent()))
 
-    def envelope(self, names: Sequence[str] = (), theory: str | None = None) -> Envelope:
-        """Bounds of what these combinations do, all there are if none is named, by a theory. Raises ValueError."""
+    def envelope(
+        self, names: Sequence[str] = (), theory: str | None = None, path: Sequence[str] = ()
+    ) -> Envelope:
+        """Bounds of what these combinations do, all there are if none is named, by a theory; or of what a force does that
+        moves along a path of rods. Raises ValueError.
+        """
         from pinjoint.systems.statics.envelope import Envelope
 
         model, settings = self._model, self._model.settings
         with model.own_state():
+            if path:
+                return Envelope.under_moving_force(model, path)
             return Envelope.of(model, names, theory or settings.theory, settings.load_steps, self._permanent())
 
     def second_order(self, elapsed: float | None = None) -> str:

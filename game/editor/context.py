@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import operator
+import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -113,6 +114,7 @@ class Scene:
     heading: the word shown top left. targets: scenes that may follow. sources: further scenes that
     this one may follow, which need not know it. systems: names, or patterns such as "physics.*", of systems that
     are active in it although they do not name it; PHYSICS lists those that let time pass.
+    like: "simulation", "pause" or "statics", as in which keys, clicks, tools and systems act in it; "": as in none.
     mod: the mod that brought it, if one did; set by the program.
     """
 
@@ -121,6 +123,7 @@ class Scene:
     targets: ClassVar[tuple[str, ...]] = HUBS
     sources: ClassVar[tuple[str, ...]] = ()
     systems: ClassVar[tuple[str, ...]] = ()
+    like: ClassVar[str] = ""
     mod: Mod | None = None
 
     @property
@@ -237,7 +240,8 @@ class Scenes:
             if name not in self._by_name:
                 known = ", ".join(self._by_name)
                 raise WrongValue("There is no scene '{scene}'; choose from {names}.", scene=name, names=known)
-            if name not in here.targets and here.name not in self._by_name[name].sources:
+            as_in = self._by_name[here.like].targets if here.like else ()
+            if name not in (*here.targets, *as_in) and here.name not in self._by_name[name].sources:
                 targets = ", ".join(here.targets)
                 raise WrongValue(
                     "From the scene '{here}' one cannot go to '{scene}', only to {scenes}.",
@@ -310,6 +314,7 @@ class Context:
         self.readiness = Readiness()
         self.scenes = Scenes(scenes)
         self.view = view
+        view.session = weakref.ref(self)
         self.gesture: Gesture | None = None
         self.footer: View | None = None
         self.lesson: Script | None = None
@@ -465,6 +470,11 @@ class Context:
     def scene(self) -> str:
         """The name of the active scene."""
         return self.scenes.active.name
+
+    @property
+    def mode(self) -> str:
+        """The scene as in which keys, clicks and tools act now: the active one, or what that is like."""
+        return self.scenes.active.like or self.scene
 
     @property
     def busy(self) -> bool:

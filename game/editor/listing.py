@@ -47,7 +47,7 @@ class Lister:
     def wanted(self) -> Vector:
         """Points across and high that the tables want beside the model; 0, 0: none is open, or not in this scene."""
         context, rods = self._context, self._context.model.rods
-        if TABLE not in context.view.wanted or context.scene not in (*LIVE, PROPERTIES):
+        if TABLE not in context.view.wanted or context.mode not in (*LIVE, PROPERTIES):
             return 0.0, 0.0
         wide = is_frame(context.model) or bearing(context.model).any()
         most = max(rods.count, context.model.particles.count)

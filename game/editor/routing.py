@@ -79,7 +79,11 @@ class Press:
         if view.help and key == "escape":
             return "close help", pixel
         scene = LIVE[0] if self.for_tools else self._context.scene
-        over = scene in LIVE and view.table_place.contains(pixel) and key not in _AT_POINTER
+        over = (
+            (scene in LIVE or self._context.mode in LIVE)
+            and view.table_place.contains(pixel)
+            and key not in _AT_POINTER
+        )
         if over and (found := ACTIONS.name_at(TABLE, key)) is not None:
             return found, pixel
         found = ACTIONS.name_at(scene, key)

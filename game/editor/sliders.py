@@ -43,7 +43,7 @@ NOTHING = {"K": 50.0, "kN": 10.0, "kN/m": 10.0, "kN·m": 10.0, "m/s²": 10.0, "m
 
 def slider_stack(context: Context) -> SliderStack:
     """The sliders on the canvas of the active scene."""
-    return sliders_of(context) if context.view.legend and context.scene in LIVE else SliderStack()
+    return sliders_of(context) if context.view.legend and context.mode in LIVE else SliderStack()
 
 
 def sliders_of(context: Context) -> SliderStack:

@@ -138,7 +138,7 @@ def tool(context: Context, name: str, title: str = "") -> Tool | None:
     action = ACTIONS[name]
     pressed = name == tool_in_hand(context) or bool(action.pressed(context))
     icon, pressed_title = action.pressed_as(context) if pressed else ("", "")
-    enabled = scene in binding.scenes and bool(action.enabled(context))
+    enabled = EXTENSIONS.acts_in(scene, binding.scenes) and bool(action.enabled(context))
     said, word = title or pressed_title or binding.title, WORDS.get(icon) or WORDS.get(name, "")
     return _tool(language(), name, said, word, binding.key, icon or name, pressed, enabled)
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components import written
+from pinjoint.components import cases, written
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.language import begun, english, joined, listed, marked, plural, tr
@@ -67,23 +67,21 @@ def show(context: Context, elapsed: float) -> None:
     view.forces_known = solved or context.readiness.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
-    lately = context.document.chronicle.told(elapsed) if context.scene in LIVE else ""
+    lately = context.document.chronicle.told(elapsed) if context.mode in LIVE else ""
     offer = None
     if context.notice:
         lasting = [context.notice]
     elif solved:
         rested = None if context.window is None else elapsed
         unfinished = tool_in_hand(context) in (DrawRod.tool, "place")  # more of the structure is to come
-        lasting = [
-            "" if unfinished else statics.message,
-            statics.second_order(rested) if context.gesture is None else "",
-        ]
-        if lasting[1]:
+        lasting = ["" if unfinished else statics.message]
+        if second := statics.second_order(rested) if context.gesture is None else "":
             offer = tr(NAMES[EXACT if statics.first_order else FIRST_ORDER]), "next theory"
         if context.gesture is None and not unfinished:
             collapse, divides = statics.collapse(rested)
             lasting.append(collapse)
             offer = (tr("divide there"), "divide at hinges") if divides else offer
+        lasting.append(second)
     else:
         remarks = [remark.message for remark in context.document.assessment.remarks]
         lasting = [*remarks, "" if follows(context) else _gone(context)]
@@ -91,7 +89,7 @@ def show(context: Context, elapsed: float) -> None:
     view.enveloped = None
     if view.envelope and solved:
         try:
-            view.enveloped = context.document.envelope
+            view.enveloped = context.document.envelope([rod.name for rod in view.path if rod.exists])
             if left_out := list(view.enveloped.without):
                 said = tr(
                     "Without an equilibrium, and so left out of the envelope: {names}.", names=listed(left_out)
@@ -106,11 +104,13 @@ def show(context: Context, elapsed: float) -> None:
     view.heading = tr(scene.heading)
     view.provisional = _provisional(context)
     view.shape = context.document.shapes.shown or (statics.motion if solved else None)
-    view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
+    view.near_buckling = context.document.shapes.near_buckling(elapsed)
+    moves = view.shape is not None or view.near_buckling
+    view.swing = context.document.shapes.swing(elapsed) if moves else 1.0
     _show_readouts(context)
     _point_out(context)
     drawing = tr(context.gesture.hint) if context.gesture is not None else _hint_of_tool(context)
-    drawing = drawing if context.scene in LIVE else ""
+    drawing = drawing if context.mode in LIVE else ""
     view.status = Status(
         time=None if solved else context.time,
         speed=context.document.live.clock.shown_pace if context.busy else 0.0,
@@ -215,14 +215,17 @@ def _point_out(context: Context) -> None:
     view.pointer, pointed = context.view.pointer, None
     if isinstance(model, Model) and (hovered := model.tagged(Hovered)):
         rows = told(model, hovered[0], forces_known=view.forces_known)
+        if rows and view.enveloped is not None:
+            rows.append((tr("combination"), cases.said(model, model.settings.combination)))
         pointed = Readout(model.describe(hovered[0]), tuple(rows)) if rows else None
         if isinstance(rod := hovered[0], Rod) and view.pointer is not None:
             place = distance_at(model, view, rod, view.pointer)
-            pointed = pointed if place is None else along(model, rod, place)
+            pointed = pointed if place is None else along(model, rod, place, view.enveloped)
     view.pointed = context.view.pointed = pointed
     if (pin := context.view.pin) is not None:
         shown = pinned(context) is not None
-        context.view.pin = replace(pin, told=along(context.model, pin.rod, pin.distance) if shown else None)
+        told_there = along(context.model, pin.rod, pin.distance, context.view.enveloped) if shown else None
+        context.view.pin = replace(pin, told=told_there)
 
 
 def _awaited(context: Context) -> Waiting | None:
@@ -257,7 +260,7 @@ def _flashes(context: Context) -> NDArray[np.float64]:
 def _preview(context: Context) -> Preview | None:
     try:
         if context.gesture is None:
-            return _pointed_at(context, context.view.pixel) if context.scene in LIVE else None
+            return _pointed_at(context, context.view.pixel) if context.mode in LIVE else None
         gesture = context.gesture
         if not (isinstance(gesture, Drawing) and gesture.typed):
             return gesture.preview(context, context.view.pixel)

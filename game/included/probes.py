@@ -27,6 +27,7 @@ if TYPE_CHECKING:  # a command needs no editor
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
 PAST = 300  # samples of the run before a plot was opened
+FARTHER = 2.0  # times the largest load step: where a plotted curve ends
 MOST_RODS = 300  # of a structure of which a curve is plotted at once
 PARTS = 24  # of each load step of statics, at which a plot has points
 ENERGIES = {  # by path, as legends name them
@@ -237,7 +238,7 @@ def plot_curve(session: Context, pixel: Vector) -> None:
         )
     held = {f"{one.name}.{axis}" for one in model.particles for at, axis in enumerate("xy") if one.fixed[at]}
     try:
-        goal = Goal.of(model, model.settings.load_steps[-1], None)
+        goal = Goal.of(model, FARTHER * (max(model.settings.load_steps, key=abs) or 1.0))
         curve = Curve.of(model, goal, theory=EXACT if model.solution is None else model.settings.theory)
     except ValueError as error:  # such as a model without loads
         session.notice = str(error)

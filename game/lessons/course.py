@@ -361,7 +361,8 @@ class Course:
             return tr("Selected: {names}", names=", ".join(self._selected()) or "–")
         if self.task.kind != NUMBER:
             return None
-        return f"{decimals(self.typed)}{'' if self.accepted else '|'} {self._unit}".rstrip()
+        unit = "" if number_and_unit(self.typed)[1] else self._unit
+        return f"{decimals(self.typed)}{'' if self.accepted else '|'} {unit}".rstrip()
 
     def _buttons(self) -> tuple[Tool, ...]:
         return (

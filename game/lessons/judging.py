@@ -53,6 +53,8 @@ _NAMES = {
     "statics.degree": marked("The degree of static indeterminacy"),
     "statics.frequency": marked("The lowest natural frequency (Hz)"),
     "statics.buckling": marked("The lowest buckling load factor"),
+    "statics.first_yield": marked("The load factor at first yield"),
+    "statics.collapse": marked("The collapse load factor"),
     "statics.width": marked("The width of the structure (m)"),
     "count.particles": marked("The number of particles"),
     "count.rods": marked("The number of rods"),

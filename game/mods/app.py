@@ -13,13 +13,13 @@ from pinjoint.components.additions import Component
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Role
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import LANGUAGES, joined, language, marked, speak, tr
+from pinjoint.components.language import LANGUAGES, joined, language, marked, plural, speak, tr
 from pinjoint.components.load import HISTORIES, HistoryKind
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import KINDS, Model
 from pinjoint.components.obstacles import Shape
 from pinjoint.components.table import fields_of
-from pinjoint.components.wording import is_identifier
+from pinjoint.components.wording import is_identifier, missing
 from pinjoint.documents import models
 from pinjoint.documents.format import Upgrade
 from pinjoint.mods.declared import check
@@ -93,7 +93,7 @@ class App:
         """
         fields = {field.name: field for field in fields_of(kind)}
         self._guard.checkers(fields.values())
-        others = [*KINDS, *EXTENSIONS.kinds.values()]
+        others: list[type[Handle]] = [*KINDS, *EXTENSIONS.kinds.values()]
         for part in ("table", "noun"):
             word = getattr(kind, part, "")
             if not word or word in [getattr(other, part) for other in others]:
@@ -125,6 +125,10 @@ class App:
                 raise WrongValue(
                     "{name}.{field}: a mod cannot add derived columns.", name=kind.__name__, field=field.name
                 )
+            tables = [other.table for other in others]
+            if field.references is not None and field.references not in tables:
+                where = f"{kind.__name__}.{field.name}:"
+                raise ModError(joined([where, missing(marked("tables"), str(field.references), tables)]))
             field.check_default(kind.__name__)
         for point in kind.points:
             if point not in fields or fields[point].shape != (2,) or fields[point].role is not Role.DOCUMENT:
@@ -156,16 +160,12 @@ class App:
         self._put(EXTENSIONS.upgrades, name, upgraded)
 
     def tool(self, kind: type[Handle], *, key: str, title: str = "", icon: Sequence[Part] = ()) -> None:
-        """Let a person draw elements of a kind with two points, from one to the other, by a key and a button.
+        """Let a person draw elements of a kind with points, from one to the next, by a key and a button.
 
         The action is "<mod>.<noun>". icon: lines and areas, as in systems/render/symbols.py; none, no button.
         """
-        if len(kind.points) != 2:
-            raise ModError(
-                "A tool draws from one point to another; {kind} must have 2 points, not {count}.",
-                kind=kind.__name__,
-                count=len(kind.points),
-            )
+        if not kind.points:
+            raise ModError("A tool draws points; name those of {kind} in its `points`.", kind=kind.__name__)
         name = f"{self.name}.{kind.noun}"
 
         def drawing() -> Any:
@@ -173,18 +173,23 @@ class App:
 
             return DrawElement.of(kind, name, key)
 
-        hint = tr(
-            "{table}: click two points, or drag from one to the other     {key} or Esc done",
-            table=tr(kind.table),
-            key=key.upper(),
-        )
+        keyed = {"table": tr(kind.table), "key": key.upper()}
+        if len(kind.points) == 2:
+            hint = tr("{table}: click two points, or drag from one to the other     {key} or Esc done", **keyed)
+        else:
+            hint = plural(
+                "{table}: click where you want them     {key} or Esc done",
+                "{table}: click {count} points, one after the other     {key} or Esc done",
+                len(kind.points),
+                **keyed,
+            )
         act = self._guard.action(name, lambda context, pixel: drawing().use(context, pixel))
         self._act(
             Action(
                 name,
                 act,
                 while_drawing=True,
-                draws=lambda context, pixel: drawing().begin(context, pixel),
+                draws=(lambda context, pixel: drawing().begin(context, pixel)) if kind.points[1:] else None,
                 hint=hint,
             )
         )
@@ -228,7 +233,10 @@ class App:
     # --- scenes, actions, keys -------------------------------------------------------------------------
 
     def scene(self, scene: type[Scene]) -> None:
-        """Add a mode. Its `sources` are the scenes from which it can be reached; "pause" must be a target."""
+        """Add a mode. Its `sources` are the scenes from which it can be reached; "pause" must be a target.
+
+        like: the one of ours as in which keys, clicks, tools and systems act in it that it does not use otherwise.
+        """
         from pinjoint.editor import scenes
 
         self._check_free(marked("a scene"), scene.name, {other.name for other in scenes.all_scenes()})
@@ -237,6 +245,8 @@ class App:
             raise ModError(
                 "The scene '{name}' must lead to pause; add 'pause' to its targets.", name=scene.name
             )
+        if scene.like not in ("", *LIVE):
+            raise ModError(joined([f"{scene.__name__}.like:", missing(marked("scenes"), scene.like, LIVE)]))
         if hasattr(scene, "advance"):
             raise ModError(
                 "The scene '{name}' has a method 'advance', which is no longer called; write a System with"
@@ -244,6 +254,8 @@ class App:
                 name=scene.name,
             )
         self._add(EXTENSIONS.scenes, made)
+        if scene.like:
+            self._put(EXTENSIONS.likes, scene.name, scene.like)
 
     def action(
         self,
@@ -263,7 +275,7 @@ class App:
         self._check_prefix("action", name)
 
         def register(function: Perform) -> Perform:
-            act = self._guard.action(name, function)
+            act = self._guard.action(name, function, title)
             offered = (Binding("", tuple(scenes), title or name),) if icon else ()
             self._act(Action(name, act, offered, while_drawing=while_drawing))
             if key:

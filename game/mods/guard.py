@@ -124,7 +124,7 @@ class Guard:
         before = Snapshot.take(model, *tables) if tables else None
 
         def changed() -> bool:
-            with model.transaction(system.name, shows_state=False):
+            with model.transaction(system.name, of_mod=True):
                 if self.mod.included:
                     change()
                 else:
@@ -215,8 +215,8 @@ class Guard:
             )
         return made
 
-    def action(self, name: str, function: Perform) -> Perform:
-        """An action of a mod: one step of undo, dropped whole if it fails."""
+    def action(self, name: str, function: Perform, title: str = "") -> Perform:
+        """An action of a mod: one step of undo, called by its title, dropped whole if it fails."""
         what = tr("the action '{name}'", name=name)
 
         def act(context: Context, pixel: Vector) -> None:
@@ -228,7 +228,7 @@ class Guard:
 
         def changed(context: Context, pixel: Vector) -> None:
             model = context.model
-            with model.transaction(name, shows_state=False), _view_kept(context):
+            with model.transaction(title or name, of_mod=True), _view_kept(context):
                 _interruptible(lambda: function(context, pixel), model)
 
         return act

@@ -16,8 +16,9 @@ from types import ModuleType
 import numpy as np
 
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.language import tr
+from pinjoint.components.language import marked, tr
 from pinjoint.components.mistake import WrongValue
+from pinjoint.components.wording import missing
 from pinjoint.documents.library import data_folder
 from pinjoint.documents.preferences import preferred_keys
 from pinjoint.interrupts import is_persons, mark_interrupts
@@ -35,11 +36,13 @@ PATIENCE = 30.0  # s that loading one mod may take
 def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list[Mod]:
     """Load the mods in these folders, or examples by name (and, if `installed`, the person's own and those of packages).
 
-    Returns all mods that were found, each with its `problem` if it was left out. Mods that are loaded stay.
+    Returns all mods that were found, each with its `problem` if it was left out. Mods that are loaded stay, but one that
+    failed is loaded anew.
     """
     found = [mod for folder in folders for mod in _in_folder(folder_of(folder))]
     if installed:
         found += [*_in_folder(mods_folder()), *_in_packages()]
+    unload([mod for mod in EXTENSIONS.mods if mod.off and mod.folder in {other.folder for other in found}])
     known: dict[Path | None, Mod] = {
         mod.folder: mod for mod in EXTENSIONS.mods if mod.loaded and mod.folder is not None
     }
@@ -85,12 +88,26 @@ def include(module: ModuleType, description: str) -> None:
     EXTENSIONS.mods.append(mod)
 
 
-def unload(mods: Sequence[Mod]) -> None:
-    """Forget mods as if they had never been loaded, the last first; for tests."""
-    for mod in reversed(mods):
+def unload(mods: Iterable[Mod | str]) -> None:
+    """Forget mods, or those of these names, with those that require them, as if they had never been loaded.
+
+    Sessions that use them go on without them. Raises ModError if there is none of a name.
+    """
+    known = {mod.name: mod for mod in EXTENSIONS.mods if not mod.included}
+    gone = list[Mod]()
+    for one in mods:
+        if isinstance(one, str) and one not in known:
+            raise ModError(missing(marked("mods"), one, known))
+        gone.append(known[one] if isinstance(one, str) else one)
+    for mod in EXTENSIONS.mods:
+        if mod.loaded and mod not in gone and not {other.name for other in gone}.isdisjoint(required(mod)):
+            gone.append(mod)
+    for mod in sorted(gone, key=lambda mod: EXTENSIONS.mods.index(mod) if mod in EXTENSIONS.mods else -1)[::-1]:
         if mod.withdraw is not None:
             mod.withdraw()
+            mod.withdraw = None
             _forget(mod)
+        mod.problem = mod.problem or tr("It was unloaded.")
         if mod in EXTENSIONS.mods:
             EXTENSIONS.mods.remove(mod)
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from pinjoint.collapse_steps import collapse_steps
 from pinjoint.components.field import ENDS
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import english, listed, marked
@@ -159,6 +160,19 @@ def _buckling(session: Any) -> float:
     return float(found.factors[0]) if len(found.factors) and not found.coarse else math.nan
 
 
+def _first_yield(session: Any) -> float:
+    """The load factor in first order at which something first yields, such as a plastic hinge; NaN if nothing can."""
+    steps = collapse_steps(session.model)
+    return float(steps.columns[0].values[0]) if steps is not None else math.nan
+
+
+def _collapse(session: Any) -> float:
+    """The collapse load factor by limit analysis."""
+    from pinjoint.systems.statics.limit_analysis import LimitLoad  # scipy
+
+    return LimitLoad.of(session.model).factor
+
+
 def _width(session: Any) -> float:
     """How far the joints reach across the direction in which they reach farthest (m): 0 where they lie on one line."""
     points = session.model.particles.position
@@ -184,6 +198,8 @@ _STATICS: dict[str, Callable[[Any], Any]] = {
     "width": _width,
     "frequency": _frequency,
     "buckling": _buckling,
+    "first_yield": _first_yield,
+    "collapse": _collapse,
 }
 
 

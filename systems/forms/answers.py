@@ -138,7 +138,14 @@ def _assign(model: Model, box: Box, elements: Sequence[Handle]) -> None:
         rows = model.row_of_entity[[element.entity for element in elements]]
         values = model.tables[elements[0].table].column(field.name)[rows]
         values[:, field.axes.index(part)] = value
+    acted = model.settings.combination
     model.assign(elements, field.name, values)
+    if (
+        field is Settings.combinations
+        and value in model.settings.combinations
+        and not model.settings.combination
+    ):
+        model.settings.combination = value if acted else ""  # under its new name
 
 
 def _with_part(element: Handle, field: Field[Any], part: str, value: Any) -> Any:

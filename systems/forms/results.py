@@ -14,7 +14,7 @@ from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, Station, farthest
 from pinjoint.components.field import CM, MOVED, Field, Role, on_screen
 from pinjoint.components.form import Reading
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import marked, tr, tr_in
+from pinjoint.components.language import joined, marked, tr, tr_in
 from pinjoint.components.load import CONSTANT, Load, SpanLoad, factor_now
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle, in_support_axes, supported, turned_supports
@@ -70,19 +70,32 @@ def told(model: Model, handle: Handle, *, forces_known: bool) -> list[tuple[str,
     return [(result.title, result.text) for result in found]
 
 
-def along(model: Model, rod: Rod, distance: float) -> Readout:
-    """The forces in a rod so far from its start (m), and how far it has moved and turned there."""
+def along(model: Model, rod: Rod, distance: float, envelope: Any = None) -> Readout:
+    """The forces in a rod so far from its start (m), and how far it has moved and turned there.
+
+    envelope: of whose forces the least and the most are told instead, and which combinations govern.
+    """
     rods, there = model.rods, Station.of(model, rod.row, distance)
     scales = (rods.end_axial_force, "kN"), (rods.shear, "kN"), (rods.largest_moment[:, 0], "kN·m")
     of = dict(zip((AXIAL, SHEAR, MOMENT), scales, strict=True))
+    title = f"{model.describe(rod)}, x = {written.length(there.distance, written.DIGITS)}"
+    if envelope is not None:
+        bounds = [
+            (name, envelope.at(name, rod.row, there.distance), envelope.forces[name].values) for name in of
+        ]
+        found = [
+            (f"{name} {side}", joined([_number(value, scale, of[name][1]), f"({governs})" * bool(governs)]))
+            for name, both, scale in bounds
+            for side, (value, governs) in zip(("min", "max"), both, strict=True)
+        ]
+        return Readout(title, tuple(found))
     rows = [(name, _number(there.forces[name], *of[name])) for name in of]
     moved, turned = MOVED[1] * there.moved, _MRAD[1] * rods.end_rotation
     column = np.append(MOVED[1] * model.particles.displacement, moved)
     moved_so_far = _vector("", moved.tolist(), column, MOVED[0], Particle.displacement).text
     rows.append((tr("displacement"), moved_so_far))
     rows.append((tr("rotation"), _number(_MRAD[1] * there.rotation, turned, _MRAD[0])))
-    place = written.length(there.distance, written.DIGITS)
-    return Readout(f"{model.describe(rod)}, x = {place}", tuple(rows))
+    return Readout(title, tuple(rows))
 
 
 # --- rods ---------------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, tr
 from pinjoint.components.settings import HUBS
@@ -92,7 +93,7 @@ class Actions(UserDict[str, Action]):
     def _index(self) -> None:
         """Forget what follows from the actions: by scene and key, and by name and scene."""
         self._by_key: dict[tuple[str, str], tuple[Action, Binding]] = {}
-        self._offers: dict[tuple[str, str], Binding | None] = {}
+        self._offers: dict[tuple[str, str, str], Binding | None] = {}
         self._known: set[str] = set()  # keys, without those that are held beside them
 
     def __setitem__(self, name: str, action: Action) -> None:
@@ -110,7 +111,7 @@ class Actions(UserDict[str, Action]):
 
     def at(self, scene: str, key: str) -> tuple[Action, Binding] | None:
         """What a key does in a scene; in scenes of mods, keys that do the same in all of ours do so, too."""
-        found = self._keys.get((scene, key))
+        found = self._keys.get((scene, key)) or self._keys.get((EXTENSIONS.likes.get(scene, ""), key))
         if found is None and scene not in EVERY:
             found = self._keys.get((EVERY[0], key))
             return found if found is not None and set(EVERY) <= set(found[1].scenes) else None
@@ -127,12 +128,13 @@ class Actions(UserDict[str, Action]):
 
         Keys that perform it in the scene come first, then those of the other, then no key.
         """
-        if (name, scene) not in self._offers:
+        like = EXTENSIONS.likes.get(scene, scene)
+        if (name, scene, like) not in self._offers:
             found = sorted(self[name].bindings if name in self else (), key=lambda binding: not binding.key)
-            scenes = (scene, *(LIVE if scene in LIVE else ()))
+            scenes = (scene, like, *(LIVE if like in LIVE else ()))
             offers = (binding for where in scenes for binding in found if where in binding.scenes)
-            self._offers[name, scene] = next(offers, None)
-        return self._offers[name, scene]
+            self._offers[name, scene, like] = next(offers, None)
+        return self._offers[name, scene, like]
 
     def bind(self, name: str, binding: Binding) -> list[tuple[Action, Binding]]:
         """Let a key perform an action in the scenes in which it is free; returns what has it in the others."""

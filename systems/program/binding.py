@@ -344,7 +344,8 @@ def _check_role(system: StepSystem, model: Model) -> None:
     name = system.name
     if not all(is_identifier(part) for part in name.split(".")):
         raise ProgramError(
-            "The name '{name}' of a step system cannot be used; name it like 'mymod.wind'.", name=name
+            "The name '{name}' of a step system cannot be used; name it like 'mymod.wind', by no word of Python.",
+            name=name,
         )
     if isinstance(system, Law) and system.each not in _KINDS:
         raise ProgramError(

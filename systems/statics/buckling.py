@@ -25,11 +25,11 @@ from pinjoint.components.rod import bears_between, extensible_elsewhere
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import needed_parts
-from pinjoint.systems.statics.equations import Array, Response, Rows, Structure, normalised, upright
+from pinjoint.systems.statics.equations import SOFT, Array, Response, Rows, Structure, normalised, upright
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, divide_named, rod_names
 from pinjoint.systems.statics.external import External
-from pinjoint.systems.statics.factor import SOFT, Factor, pseudo_random, regular, shifted, unresisted
+from pinjoint.systems.statics.factor import Factor, pseudo_random, regular, shifted, unresisted
 from pinjoint.systems.statics.state import Start, StaticState
 from pinjoint.systems.statics.theory import FULL, linear
 

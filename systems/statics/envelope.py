@@ -14,11 +14,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from pinjoint.components import written
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, forces_along, inner_forces
 from pinjoint.components.cases import Acting, choose, settled
 from pinjoint.components.derived import initial_slopes, moments_along, on_joints, unforced
 from pinjoint.components.field import FieldError
-from pinjoint.components.language import tr
+from pinjoint.components.language import listed, tr
+from pinjoint.components.load import SpanLoad
 from pinjoint.components.model import Model
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.spans import Curves, Kinks, extremes
@@ -35,6 +37,10 @@ from pinjoint.systems.statics.theory import FirstOrder
 _REFINEMENTS = 10  # of solutions, at most
 _KNOWN = ROUND_OFF**0.5  # of a solution: after a refinement by less, what is left is round-off
 _STATIONS = np.linspace(0.0, 1.0, 21)  # along each rod, besides those where something jumps or is largest
+POSITIONS = (
+    40  # along each rod of a path, beside its start: forces largest between them are told up to 0.1 % less
+)
+_BESIDE = 1e-9  # of the length of a rod, from its ends: there shear forces beside supports are largest
 _ROUNDING = 1e-12  # of the largest value: by less, no other combination governs
 
 Combinations = Mapping[str, Mapping[str, float] | None]
@@ -195,7 +201,9 @@ class Envelope:
     """Bounds of what k combinations do, those that are in equilibrium; without: of the others, why not. length: of rods, m.
 
     shares: by letter N, V, M, of the lengths of rods, stations along each, ascending, the last perhaps several times,
-    (rods, s); forces: bounds there, (2, rods, s). reaction, displacement: with rotations as third part, (2, n, 3).
+    (rods, s); forces: bounds there, (2, rods, s). reaction, displacement: with rotations as third part, (2, n, 3). curves:
+    of forces along all rods in the first combination, the second, … path: the rods along which a force of 1 kN moves, whose
+    positions are the combinations; () of load cases.
     """
 
     combinations: tuple[str, ...]
@@ -205,6 +213,8 @@ class Envelope:
     forces: Mapping[str, Bounds]
     reaction: Bounds
     displacement: Bounds
+    curves: Mapping[str, Curves]
+    path: tuple[str, ...] = ()
 
     @classmethod
     def of(
@@ -257,7 +267,33 @@ class Envelope:
         reaction = Bounds.of(found.reaction, np.array([pull, pull, turn]))
         displacement = Bounds.of(found.displacement, np.array([moved, moved, turned]))
         solved = tuple(name for name in chosen if name not in without)
-        return cls(solved, without, length, stations, forces, reaction, displacement)
+        return cls(solved, without, length, stations, forces, reaction, displacement, found.forces)
+
+    @classmethod
+    def under_moving_force(cls, model: Model, path: Sequence[str]) -> Envelope:
+        """That of one force of 1 kN downwards that moves along these rods, alone and by first-order theory; "combinations"
+        are where it stands. Raises LookupError, and NoEquilibrium of a mechanism.
+        """
+        copy, rows = model.undeformed_copy(), [model.rods[name].row for name in path]
+        copy.delete([*copy.loads, *copy.span_loads])
+        length, shares = model.rods.original_length[rows], np.linspace(0.0, 1.0, POSITIONS + 1)
+        places = np.outer(length, np.clip(shares, _BESIDE, 1.0 - _BESIDE)).ravel()
+        cases, on = [str(number) for number in range(len(places))], np.repeat(rows, len(shares))
+        copy.create(SpanLoad, len(places), rod=on, start=places, force=(0.0, -1.0), case=cases)
+        copy.settings.combinations = {case: {case: 1.0} for case in cases}
+        found = cls.of(copy, (), FIRST_ORDER, (1.0,), np.zeros((model.rods.count, 3)))
+        told = [
+            f"{rod}, {written.length(x)}" for rod, size in zip(path, length, strict=True) for x in size * shares
+        ]
+        stands = tuple(told[int(case)] for case in found.combinations)
+        return replace(found, combinations=stands, path=tuple(path))
+
+    @property
+    def said(self) -> str:
+        """Of what it is."""
+        if self.path:
+            return tr("envelope of 1 kN downwards that moves along {rods}", rods=listed(self.path))
+        return tr("envelope of {names}", names=listed(self.combinations))
 
     def extremes(self, quantity: str, row: int) -> tuple[Extreme, Extreme]:
         """The least and the most of "N", "V" or "M" along a rod."""
@@ -267,6 +303,18 @@ class Envelope:
             name = self.named(bounds.governing[side, row, at])
             found.append(Extreme(float(bounds.values[side, row, at]), float(shares[at]) * length, name))
         return found[0], found[1]
+
+    def at(self, quantity: str, row: int, distance: float) -> list[tuple[float, str]]:
+        """The least and the most of "N", "V" or "M" so far from the start of a rod (m), and in which combinations."""
+        share = np.array([min(distance / max(float(self.length[row]), 1e-300), 1.0)])
+        values = (
+            self.curves[quantity].some(np.arange(row, len(self.curves[quantity]), len(self.length))).at(share)
+        )
+        found = Bounds.of(values[:, 0], largest(self.forces[quantity].values))
+        return [
+            (float(value), self.named(number))
+            for value, number in zip(found.values, found.governing, strict=True)
+        ]
 
     def named(self, number: int) -> str:
         """The name of a combination by its number; "" where all are alike."""

@@ -42,6 +42,9 @@ MOST_ITERATIONS = 60  # for the axial force of a rod with plastic hinges
 UNBALANCED = 1e-13  # of the largest force, by the length of a rod: a moment that is round-off
 AT_LIMIT = 1e-10  # share of its strength within which a rod counts as yielding
 ROUND_OFF = float(np.finfo(np.float64).eps)
+SOFT = (
+    1e-12  # of the rods' stiffness at the same particle: a motion that is resisted less counts as not resisted
+)
 
 
 def largest(values: Array) -> float:
@@ -552,7 +555,8 @@ class Structure:
         leaning = (axis * change[:, ::-1]).sum(axis=1) / np.where(
             response.length > 0.0, response.length, np.inf
         )
-        bent = self.bending.end_stiffness[:, ::2] * (turns + leaning[:, None]) ** 2
+        own, summed = self.bending.end_stiffness[:, ::2], self._turned_by(np.abs(field))
+        bent = own * ((turns + leaning[:, None]) ** 2 + ROUND_OFF / SOFT * summed**2)
         sprung = (self.springs * self.along_supports(field) ** 2).sum()
         return float((self.stiffness / self.rest_length) @ along**2 + bent.sum() + sprung)
 
@@ -892,11 +896,17 @@ class Structure:
         """The residual (kN) that rounding of the displacements alone causes."""
         size = np.abs(self.gather(displacement))
         pulled = 2.0 * ROUND_OFF * self.greatest(self.weight * size)
-        return (
-            pulled
-            if response.bent is None
-            else max(pulled, largest(self._round_off_of_bows(displacement, response.bent)))
-        )
+        if self.bending is None or response.bent is None:
+            return pulled
+        bows = largest(self._round_off_of_bows(displacement, response.bent))
+        turned = self._turned_by(np.abs(displacement)) / self.rest_length[:, None]
+        return max(pulled, bows, 2.0 * ROUND_OFF * largest(self.bending.end_stiffness[:, ::2] * turned))
+
+    def _turned_by(self, sizes: Array) -> Array:
+        """What slopes of ends are sums of, without regard to signs, by the sizes of a field; (rods, 2)."""
+        length = np.where(self.original_length > 0.0, self.original_length, np.inf)
+        turned: Array = sizes[self.ends, 2] + (sizes[self.ends, :2].sum(axis=(1, 2)) / length)[:, None]
+        return turned
 
     # --- tangent -------------------------------------------------------------------------------------
 

@@ -15,14 +15,13 @@ import numpy as np
 
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.assembly import SYMMETRIC, Matrix
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Response, Structure
+from pinjoint.systems.statics.equations import ROUND_OFF, SOFT, Array, Flags, Response, Structure
 
 if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix
 
 HOLDS_LAPACK = "scipy.linalg._flapack"
 NO_STIFFNESS = 1e-13  # of the rods' stiffness at the same particle: round-off
-SOFT = 1e-12  # of the same: a motion that is resisted less counts as not resisted
 SURELY_HELD = 8e-9  # of the same: what is resisted by more loses no digits, by any measure of a motion
 SOFT_MODES = 8  # that are looked for at most
 HELD = 1e-9  # of the largest stiffness: a motion that is resisted less is not held

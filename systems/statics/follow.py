@@ -143,6 +143,7 @@ class Path:
         self._dead_push = structure.gather(change)
         self.exact_events = len(structure.ends) <= EXACT_EVENTS
         self.scale = max(structure.largest(force), structure.largest(force + change))
+        self.largest_move = math.inf if structure.first_order else LARGEST_MOVE
         self.reference = 0.0  # size of du/dt that counts as much as dt does; that of the first tangent
 
     def load(self, t: float) -> Array:
@@ -381,7 +382,7 @@ class Path:
 
         An increment ends where a rod begins to yield, slackens or tightens; one that fails is halved.
         """
-        far = LARGEST_MOVE / max(self.structure.move(tangent.rate, point.response), 1e-300)
+        far = self.largest_move / max(self.structure.move(tangent.rate, point.response), 1e-300)
         nearest = min(self._until_event(point, tangent), 0.99 * far * self.stretch(tangent))
         trial, failed, shares = min(increment, nearest), False, 0
         while trial > min(SMALLEST, HALF * nearest):
@@ -477,7 +478,9 @@ class Path:
         normal = None
         if across is not None and self.reference > 0.0:
             normal = structure.measure**2 * across.rate / self.reference**2
-        displacement, step = guess, np.zeros_like(guess)
+        displacement, step, begun = guess, np.zeros_like(guess), start.displacement
+        if structure.first_order:  # the way to the guess is straight, however long
+            begun = guess
         before, dt, share, soft = math.inf, 0.0, 1.0, None
         for iteration in range(NEWTON_ITERATIONS):
             response = (
@@ -503,7 +506,7 @@ class Path:
             step, dt = structure.spread(moved[0]), moved[1]
             before, share, soft = size, 1.0, response.soft
             displacement, t = displacement + step, t + dt
-            change = structure.gather(displacement - start.displacement)
+            change = structure.gather(displacement - begun)
             if not structure.move(change, start.response) <= 2.0 * LARGEST_MOVE:
                 return None
         return None
@@ -544,7 +547,7 @@ class Path:
         """True if the increment went where the tangent pointed and the tangent did not turn much."""
         structure = self.structure
         size = structure.move(change, response)
-        if size > LARGEST_MOVE:
+        if size > self.largest_move:
             return False
         if structure.move(change - predicted, response) > MISS * size + 64.0 * ROUND_OFF:
             return False

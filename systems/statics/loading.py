@@ -7,12 +7,22 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.field import ENDS
 from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.model import Model
-from pinjoint.systems.statics.equations import Array, Flags, largest, normalised, of_axes, of_rods
+from pinjoint.systems.statics.equations import (
+    SOFT,
+    Array,
+    Flags,
+    Structure,
+    largest,
+    normalised,
+    of_axes,
+    of_rods,
+)
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, hinges_named, moved, rod_names, slack_named
-from pinjoint.systems.statics.factor import NO_STIFFNESS, SOFT, is_stable, regular, softest, unresisted
+from pinjoint.systems.statics.factor import NO_STIFFNESS, is_stable, regular, softest, unresisted
 from pinjoint.systems.statics.follow import HALF, NARROWINGS, Path, Point, Tangent
 from pinjoint.systems.statics.relax import LARGEST_PLASTIC_ROTATION, RUNAWAY, STEPS, relax, torn
 
@@ -56,12 +66,14 @@ class Loading:
             self._note_cables(tangent)
             start = self.point, tangent
             tangent, increment = self._increment(tangent, increment)
+            if self.path.structure.first_order:
+                continue
             if largest(self.point.displacement[:, :2]) > RUNAWAY * self.path.structure.extent:
                 motion = self.path.structure.spread(tangent.rate)
                 if tangent.flowing.any():
                     raise self._collapse(tangent.flowing, motion)
                 raise self._mechanism(motion, tangent.slack)
-            if not self.path.structure.first_order and (beyond := self._torn(self.point)).any():
+            if (beyond := self._torn(self.point)).any():
                 self._narrow(*start)
                 raise self._beyond_strains(beyond, self.path.structure.spread(tangent.rate))
         raise self._lost()
@@ -130,10 +142,8 @@ class Loading:
     def _note_yields(self, tangent: Tangent, found: Point, following: Tangent) -> None:
         """Report the rods that begin to yield."""
         new, t = of_axes((found.response.flowing | following.flowing) & ~tangent.flowing), found.t
-        if tangent.flowing.ndim > 1:
-            self._note_hinges(
-                tangent.flowing[:, 1:], found.response.flowing[:, 1:], following.flowing[:, 1:], t
-            )
+        flows = tangent.flowing, found.response.flowing, following.flowing
+        self.events += hinges_formed(self.model, self.path.structure, flows, self.factor(t), self.total)
         if not new.any():
             return
         force = found.response.axial_force
@@ -149,22 +159,6 @@ class Loading:
             ),
         ]
         self._tell("yield", t, joined(said), new)
-
-    def _note_hinges(self, before: Flags, meanwhile: Flags, following: Flags, t: float) -> None:
-        """Report the plastic hinges that form, (rods, 2), but not that of ends at one joint another turns instead."""
-        ends, names = self.path.structure.ends, self.model.rods.names
-        new = following & ~before & ~np.isin(ends, ends[before & ~following])
-        new |= meanwhile & ~before & ~np.isin(ends, ends[before | following])
-        for row, end in np.argwhere(new).tolist():
-            particle = self.model.particles.names[ends[row, end]]
-            message = tr(
-                "A plastic hinge forms at {particle}, in {rod}, {at}.",
-                particle=particle,
-                rod=rod_names(self.model, np.array([row])),
-                at=self._at(t),
-            )
-            place = {"particle": particle, "rod": names[row], "end": ("start", "end")[end]}
-            self.events.append(Event("hinge", self.factor(t), message, (names[row],), place=place))
 
     def _note_cables(self, tangent: Tangent) -> None:
         """Report the cables that go slack, or tighten again, and the struts that buckle, or become straight again."""
@@ -423,14 +417,7 @@ class Loading:
         return last if t >= 1.0 else first + t * (last - first)
 
     def _at(self, t: float) -> str:
-        factor = self.factor(t)
-        if self.total <= 0.0:
-            return tr("at the load factor {factor}", factor=written.number(factor))
-        return tr(
-            "at the load factor {factor} ({force} in all)",
-            factor=written.number(factor),
-            force=written.force(abs(factor) * self.total),
-        )
+        return _at(self.factor(t), self.total)
 
     def _said_of(self, one: str, many: str, rods: Flags, t: float) -> str:
         """A sentence about one or many rods, at the load at t; "" about none."""
@@ -446,6 +433,39 @@ class Loading:
         concerned = () if rods is None else tuple(str(names[row]) for row in np.flatnonzero(of_rods(rods)))
         motion = None if motion is None else normalised(motion)
         self.events.append(Event(kind, self.factor(t), message, concerned, motion))
+
+
+def hinges_formed(
+    model: Model, structure: Structure, flows: tuple[Flags, Flags, Flags], factor: float, total: float = 0.0
+) -> list[Event]:
+    """The plastic hinges that form, but not that of ends at one joint another turns instead.
+
+    flows: what yielded before, meanwhile, and from now on. total: Σ |force| at the load factor 1 (kN), to be told; or 0.
+    """
+    if flows[0].ndim == 1:
+        return []
+    ends, (before, meanwhile, following) = structure.ends, (flags[:, 1:] for flags in flows)
+    new = following & ~before & ~np.isin(ends, ends[before & ~following])
+    new |= meanwhile & ~before & ~np.isin(ends, ends[before | following])
+    events = []
+    for row, end in np.argwhere(new).tolist():
+        rod, particle = model.rods.names[row], model.particles.names[ends[row, end]]
+        message = tr(
+            "A plastic hinge forms at {particle}, in {rod}, {at}.",
+            particle=particle,
+            rod=rod_names(model, np.array([row])),
+            at=_at(factor, total),
+        )
+        place = {"particle": particle, "rod": rod, "end": ENDS[end]}
+        events.append(Event("hinge", factor, message, (rod,), place=place))
+    return events
+
+
+def _at(factor: float, total: float) -> str:
+    if total <= 0.0:
+        return tr("at the load factor {factor}", factor=written.number(factor))
+    force = written.force(abs(factor) * total)
+    return tr("at the load factor {factor} ({force} in all)", factor=written.number(factor), force=force)
 
 
 def first_order_mechanism(

@@ -19,12 +19,13 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.theory import EXACT
 from pinjoint.components.wording import cut, missing
-from pinjoint.systems.statics.equations import AXES, Array, Structure, normalised, upright
+from pinjoint.systems.statics.equations import AXES, SOFT, Array, Structure, normalised, upright
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.explain import describe_motion
 from pinjoint.systems.statics.external import External
-from pinjoint.systems.statics.factor import SOFT, regular, softest
+from pinjoint.systems.statics.factor import regular, softest
 from pinjoint.systems.statics.follow import HALF, Path, Point, Step, Tangent
+from pinjoint.systems.statics.loading import hinges_formed
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import StaticState
 
@@ -93,8 +94,8 @@ class Curve:
     Where members bend: rotation (k, n) in rad, bending_moment (k, rods, 2) in kN·m; else zeros.
 
     stable: (k,), False where the structure would snap or collapse under a dead load. complete: False if it
-    has as many points as were asked for, or its path was lost, before the goal. events: limit points and bifurcations on
-    the way, in order.
+    has as many points as were asked for, or its path was lost, before the goal. events: plastic hinges, limit points and
+    bifurcations on the way, in order.
     """
 
     load_factor: Array
@@ -267,6 +268,8 @@ class _Search:
             reached = side * self.beyond(step.point) <= 0.0
             if reached:
                 step = self._landed(found[-1], step)
+            flows = tangent.flowing, step.point.response.flowing, step.tangent.flowing
+            events += hinges_formed(model, path.structure, flows, self.sign * step.point.t)
             for critical in () if path.structure.first_order else self._passed(point, tangent, step):
                 bifurcations += critical.kind == BIFURCATION
                 events.append(critical.event(model, self.sign, bifurcations))
@@ -293,7 +296,7 @@ class _Search:
         path, following, turned = self.path, step.tangent, step.tangent.sense != tangent.sense
         if not np.array_equal(following.soft, tangent.soft):  # a corner of the path, where rods begin to yield
             if turned:
-                yield _Critical(path, LIMIT_POINT, step.point, following)
+                yield _Critical(path, LIMIT_POINT, step.point, replace(following, sense=tangent.sense))
             return
         if not (following.factor.exists and tangent.factor.exists):
             return

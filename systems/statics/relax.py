@@ -54,7 +54,8 @@ def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STE
         if penalty == 0.0:
             pace = structure.move(residual / structure.weight, point.response)
             penalty = max(pace, 1e-9) / LARGEST_MOVE
-        crept = creep(path, point, residual, penalty, partial(_travel, structure, point))
+        longest = max(1.0, _travel(structure, start, point.displacement)) if structure.first_order else 1.0
+        crept = creep(path, point, residual, penalty, partial(_travel, structure, point, longest=longest))
         if crept is None:
             break
         point, penalty = crept
@@ -80,10 +81,13 @@ def has_run_away(structure: Structure, displacement: Array, start: Array) -> boo
     return largest(moved[:, :2]) > RUNAWAY * structure.extent or largest(moved[:, 2:]) > ROUND_AND_ROUND
 
 
-def _travel(structure: Structure, point: Point, displacement: Array) -> float:
-    """The largest change of a rod from a point to these displacements, as a share of the largest in a step."""
+def _travel(structure: Structure, point: Point, displacement: Array, longest: float = 1.0) -> float:
+    """The largest change of a rod from a point to these displacements, as a share of the largest in a step.
+
+    longest: times LARGEST_MOVE, the largest; in first-order theory ways are straight, and may be the longer the farther.
+    """
     change = structure.gather(displacement - point.displacement)
-    return structure.move(change, point.response) / LARGEST_MOVE
+    return structure.move(change, point.response) / (longest * LARGEST_MOVE)
 
 
 def _nudged(path: Path, point: Point, direction: Array) -> Point:
@@ -134,6 +138,6 @@ def implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> 
         step = factor.solve(pull)
         before, share, soft = size, 1.0, response.soft
         moved = moved + step
-        if not structure.move(moved, point.response) <= 4.0 * LARGEST_MOVE:
+        if not (structure.first_order or structure.move(moved, point.response) <= 4.0 * LARGEST_MOVE):
             return None
     return None

@@ -29,7 +29,7 @@ from pinjoint.components.theory import EXACT
 from pinjoint.components.wording import quoted
 from pinjoint.systems.statics.bending import needed_parts
 from pinjoint.systems.statics.contacts import Discs, Sinking
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised, of_axes
+from pinjoint.systems.statics.equations import ROUND_OFF, SOFT, Array, Structure, largest, normalised, of_axes
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import (
     describe_motion,
@@ -39,7 +39,7 @@ from pinjoint.systems.statics.explain import (
     slack_named,
 )
 from pinjoint.systems.statics.external import External, loose_bodies
-from pinjoint.systems.statics.factor import SOFT, SURELY_HELD, regular, soft_modes, softest
+from pinjoint.systems.statics.factor import SURELY_HELD, regular, soft_modes, softest
 from pinjoint.systems.statics.follow import Path, Point
 from pinjoint.systems.statics.loading import Loading, first_order_mechanism
 from pinjoint.systems.statics.relax import BALANCED
@@ -47,7 +47,7 @@ from pinjoint.systems.statics.state import NEUTRAL, STABLE, UNSTABLE, Start, Sta
 from pinjoint.systems.statics.theory import FirstOrder
 
 LARGEST_GROWTH, SMALLEST_GROWTH = 1 / 16, 1 / 1024  # shares by which lack of fit grows where rods yield by it
-MOST_TOLD = 3  # events in an account besides the message
+MOST_TOLD, MOST_HINGES = 3, 8  # events in an account besides the message, and plastic hinges
 # Kinds of events that messages repeat.
 TOLD = ("free body", "mechanism", "plastic mechanism", "snap-through", "bifurcation", "note")
 NEARLY_SOFT = 1e-9  # of the rods' stiffness: a note about a motion that is resisted less
@@ -89,10 +89,16 @@ class Settlement:
 
     @property
     def account(self) -> str:
-        """The message, or else the status, and the first of the other events."""
-        others = [event.message for event in self.events if event.message not in self.message]
+        """The message, or else the status, the plastic hinges in order, and the first of the other events."""
+        hinges = [event for event in self.events if event.kind == "hinge"]
+        others = [e.message for e in self.events if e.message not in self.message and e.kind != "hinge"]
         more = len(others) - MOST_TOLD
-        said = [self.message or tr("Result: {status}.", status=tr(self.status)), *others[:MOST_TOLD]]
+        said = [self.message or tr("Result: {status}.", status=tr(self.status))]
+        if hinges:
+            places = [joined([e.place["particle"], "×", written.given(e.load_factor, 4)]) for e in hinges]
+            places[MOST_HINGES:] = ["…"] * (len(hinges) > MOST_HINGES)
+            said.append(tr("Plastic hinges by load factor: {places}.", places=joined(places, ", ")))
+        said += others[:MOST_TOLD]
         return joined(
             [*said, plural("And one more event.", "And {count} more events.", more) if more > 0 else ""]
         )

@@ -88,6 +88,7 @@ class StaticState:
         length = response.length
         if structure.first_order:  # response.length is that about which rods turn
             length = structure.original_length + response.elongation - structure.misfit
+        of_struts = _of_struts(model, response)
         return cls(
             displacement=displacement[:count, :2],
             rotation=structure.rotation(displacement)[:count],
@@ -101,7 +102,7 @@ class StaticState:
             reaction=reaction[:, :2],
             reaction_moment=structure.rotation(reaction),
             diagrams={
-                **_of_struts(model, response),
+                **of_struts,
                 **diagrams(
                     model,
                     response.axis[rods],
@@ -109,6 +110,7 @@ class StaticState:
                     structure.chords(displacement)[rods],
                     structure.rotation(displacement)[structure.ends[rods]],
                     (response.axial_force[rods], structure.end_moments(response)[rods]),
+                    of_struts.get("lateral_deflection"),
                     share=response.share,
                     first_order=structure.first_order,
                 ),

@@ -13,6 +13,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.systems.statics.equations import (
     ROUND_OFF,
+    SOFT,
     Array,
     Response,
     Structure,
@@ -23,7 +24,7 @@ from pinjoint.systems.statics.equations import (
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External, loose_bodies
-from pinjoint.systems.statics.factor import SOFT, SURELY_HELD, pseudo_random, regular, soft_modes, unresisted
+from pinjoint.systems.statics.factor import SURELY_HELD, pseudo_random, regular, soft_modes, unresisted
 from pinjoint.systems.statics.state import STABLE, Start, StaticState
 
 _REFINEMENTS = 4  # of a linear solution

@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 71_695,
+    "lines": 72_170,
     "files": 385,
-    "names": 3_956,  # functions, classes and constants of modules
-    "public names": 2_356,
-    "numbers": 1_523,  # other than 0, 1 and 2, in constants and defaults
+    "names": 3_972,  # functions, classes and constants of modules
+    "public names": 2_364,
+    "numbers": 1_536,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 58_175,
+    "lines of tests": 59_401,
 }
 
 

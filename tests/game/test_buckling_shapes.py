@@ -15,6 +15,7 @@ from pinjoint.systems.edit.arrows import extent
 from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.statics.buckling import Buckling
 from tests.game.test_shapes import session_of, shown
 from tests.verification.test_buckling import CLAMPED, HEADS, column
 
@@ -166,3 +167,24 @@ def test_statics_tells_buckling_about_the_exact_equilibrium() -> None:
     assert shape.about == pytest.approx(session.statics().final.displacement)
     assert "the load factor 10" in shape.note
     assert mode_shapes(session.model, 1)[0].title.startswith("Mode 1 of 24 under load: ")
+
+
+def test_compression_near_the_critical_pulses_in_the_members_that_take_part() -> None:
+    """Of Euler's columns, the cantilever buckles first, at π²EI/(2L)²; the others, at 4 times that and more, stand still."""
+    session = Session.open("eulers_columns")
+    session.press("q")
+    critical = Buckling.of(session.model, 1).factors[0]
+
+    def pulsing(share: float) -> set[str]:
+        session.settings.load_steps = [share * critical]
+        for _ in range(4):
+            session.frame(0.1)
+        return {session.model.rods.names[row] for row in session.view.near_buckling}
+
+    assert pulsing(0.79) == set()
+    assert pulsing(0.81) == {f"A{k}-A{k + 1}" for k in range(8)}
+    before = session.view.swing
+    session.frame(0.3)
+    assert session.view.swing != before
+    assert "near buckling" in compose(session.model, session.view, load_theme()).meanings
+    assert pulsing(0.5) == set()

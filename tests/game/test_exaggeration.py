@@ -67,6 +67,8 @@ def test_large_motions_loose_particles_and_collapses_are_true_to_scale(name: str
         "williams_toggle": 20.0,
         "gerber_beam": 50.0,
         "load_cases": 200.0,
+        "fixed_beam_collapse": 20.0,
+        "portal_collapse": 20.0,
         "sway_resonance": 100.0,
     }
     assert session.settings.displacement_scale == small.get(name, 1.0)

@@ -559,6 +559,36 @@ def test_what_was_typed_counts_while_the_tool_goes_on(session: Session) -> None:
 # --- progress, and the person's own work -----------------------------------------------------------------
 
 
+def test_a_load_stays_when_its_tool_is_pressed_again_where_it_begins(session: Session) -> None:
+    """As after Esc at a box with a refused unit: the arrow would have no length."""
+    begun(session, "18_draw_by_typing", 3)
+    session.particles["B"].force = (0.0, 15.0)
+    at = session.point(4, 0)
+    session.press("f", at)
+    keyed(session, "-15 kN/m")
+    session.press("return")
+    session.press("escape")
+    session.press("f", at)
+    assert session.particles["B"].force == (0.0, 15.0)
+    assert "no length" in session.notice
+    keyed(session, "-15 kN")
+    session.press("return")
+    assert session.particles["B"].force == (0.0, -15.0)
+    session.press("f", at)
+    keyed(session, "0")
+    session.press("return")
+    assert session.particles["B"].force == (0.0, 0.0)
+
+
+def test_a_unit_that_is_typed_is_shown_once(session: Session) -> None:
+    course = begun(session, "04_supports_and_reactions", 1)
+    for typed, shown in (("30", "30| kN"), (" N", "30 N|")):
+        keyed(session, typed)
+        session.update_view()
+        assert course.view.card is not None
+        assert course.view.card.entry == shown
+
+
 def test_progress_survives_a_restart_and_a_damaged_file(session: Session) -> None:
     course = begun(session, "06_statically_indeterminate", 1)
     session.course.answer(1)

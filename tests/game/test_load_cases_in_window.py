@@ -8,8 +8,11 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
+from pinjoint.components.bent import Station
 from pinjoint.components.cases import acting, choices
 from pinjoint.components.language import spoken
+from pinjoint.components.tags import Hovered
+from pinjoint.components.view import Pin
 from pinjoint.documents.document import document, parse
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.sheet import Solved, contents
@@ -143,6 +146,25 @@ def test_a_table_of_combinations_is_typed_and_taken_back() -> None:
     assert not session.settings.combinations
 
 
+def test_the_combination_that_acts_acts_on_under_a_new_name() -> None:
+    session = in_statics(beam(combination="ULS"))
+    session.act("edit combinations")
+    session.click_box("combination")
+    session.type("limit")
+    session.press("return")
+    assert session.settings.combination == "limit"
+    session.press("escape")
+    session.press("escape")
+    session.undo()
+    assert (session.settings.combination, list(session.settings.combinations)) == ("ULS", ["ULS", "all"])
+    session.act("edit combinations")
+    session.click_box("combination")
+    scene = session.scenes.active
+    assert isinstance(scene, Properties)
+    scene.choose_word(session, 0)  # remove it
+    assert session.settings.combination == ""
+
+
 def test_own_loads_become_loads_of_a_case_by_their_box() -> None:
     source = three_spans()
     source["particles"][1]["force"] = [3.0, -5.0]  # type: ignore[index]
@@ -213,6 +235,35 @@ def test_the_window_draws_the_envelope_with_what_governs() -> None:
     assert "envelope of ULS and all" in texts(session)
 
 
+def test_numbers_at_places_are_those_of_the_envelope() -> None:
+    """Hand: M_B = −15.06 kN·m; 1 m beside it is what both combinations do there, each by three moments."""
+    session = in_statics(beam())
+    session.select(session.rods["AB"])
+    expected = {}
+    for name in ("ULS", "all"):
+        choose(session, name)
+        expected[name] = Station.of(session.model, 0, 3.0).forces
+    choose(session, "Envelope")
+    session.view.pin = Pin(session.rods["AB"], 3.0)
+    session.frame(0.0)
+    assert session.view.pin.told is not None
+    rows = dict(session.view.pin.told.rows)
+    for letter in "NVM":
+        values = sorted((of[letter], name) for name, of in expected.items())
+        if abs(values[0][0] - values[1][0]) < 1e-9:
+            assert rows[f"{letter} min"] == rows[f"{letter} max"]
+            continue
+        for side, (value, name) in zip(("min", "max"), values, strict=True):
+            assert rows[f"{letter} {side}"].endswith(f"({name})")
+            assert float(rows[f"{letter} {side}"].split(" ")[0].replace("−", "-")) == pytest.approx(
+                value, rel=1e-3
+            )
+    session.model.tag_only([session.particles["A"]], Hovered)
+    session.frame(0.0)
+    assert session.view.pointed is not None
+    assert session.view.pointed.rows[-1] == ("combination", "all")
+
+
 def test_tables_name_what_governs() -> None:
     session = in_statics(beam())
     choose(session, "Envelope")
@@ -260,7 +311,7 @@ def test_commands_draw_cases_combinations_and_envelopes(tmp_path: Path) -> None:
         assert said in made.read_text(encoding="utf-8")
     assert main(["render", str(model), "--envelope", "--output", str(made)]) == 2
     assert main(["sheet", str(model), "--envelope", "--output", str(tmp_path / "sheet.pdf")]) == 0
-    figures = figures_of(contents(Solved(parse(beam()), "first-order", enveloped=True), LAYOUTS[0]))
+    figures = figures_of(contents(Solved(parse(beam()), "first-order", ()), LAYOUTS[0]))
     captions = [figure.caption.text for figure in figures]
     assert any(caption.startswith("Envelope of ULS and all: Bending moments M") for caption in captions)
     assert main(["sheet", str(model), "--combination", "snow", "--output", str(tmp_path / "sheet.pdf")]) == 0

@@ -44,14 +44,14 @@ def preview_of(name: str) -> dict[str, Any]:
     """Displacements, velocities and forces in the rods of an example at its moment."""
     session = Session.open(name)
     if name not in MOMENTS:
-        assert session.settle() in ("equilibrium", "neutral equilibrium"), name
+        assert session.settle(session.settings.load_steps) in ("equilibrium", "neutral equilibrium"), name
     elif MOMENTS[name]:
         session.run(time=MOMENTS[name])
     velocity = session.model.writable("particles.velocity")
     velocity[np.abs(velocity) < STILL * np.abs(velocity).max(initial=0.0)] = 0.0
     columns: tuple[str, ...] = ("particles.displacement", "particles.velocity", "rods.axial_force")
     if bends(session.model):
-        columns = *columns, "particles.rotation", "rods.end_moment"
+        columns = *columns, "particles.rotation", "rods.end_moment", "rods.plastic_rotation"
     session.document.get_ready()
     state = {column: _rounded(session.model.column(column)) for column in columns}
     return {column: values for column, values in state.items() if np.any(values)}

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import pinjoint.api  # noqa: F401 (the mods that are included come before those of tests)
 from pinjoint import mods
 from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.program.compiler import VARIABLE, Choice, Compile

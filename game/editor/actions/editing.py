@@ -97,7 +97,7 @@ def _open_menu(context: Context, pixel: Vector) -> None:
     """The menu of what is under the pointer, which is selected; a drawing, or a tool in hand, is ended instead."""
     if _cancel(context):
         return
-    if context.scene in LIVE:
+    if context.mode in LIVE:
         model, view = context.model, context.view
         hit = pick(model, view, pixel) or symbol_at(model, view, pixel)
         if hit is None:
@@ -118,13 +118,13 @@ def _drag(context: Context, pixel: Vector) -> None:
         context.gesture = DrawSupport(context, particle)
     elif tool:
         _draw(context, tool, pixel)
-    elif particle is not None and context.scene == "simulation":
+    elif particle is not None and context.mode == "simulation":
         context.gesture = PullParticle(context, particle)
-    elif context.scene in HUBS and particle is None and (grip := pick_point(model, view, pixel)) is not None:
+    elif context.mode in HUBS and particle is None and (grip := pick_point(model, view, pixel)) is not None:
         context.gesture = MovePoint(context, grip)
-    elif context.scene in HUBS and particle is None and (held := _arrow_at(context, pixel)) is not None:
+    elif context.mode in HUBS and particle is None and (held := _arrow_at(context, pixel)) is not None:
         context.gesture = MoveArrow(context, *held, pixel)
-    elif context.scene in HUBS and (hit := particle or pick_line(model, view, pixel)) is not None:
+    elif context.mode in HUBS and (hit := particle or pick_line(model, view, pixel)) is not None:
         context.gesture = Move(context, hit, pixel)
     else:
         context.gesture = BoxSelect(context, pixel, adding=False)
@@ -194,11 +194,11 @@ def _escape(context: Context, pixel: Vector) -> None:
         return
     if context.document.shapes.shown is not None:
         context.document.shapes.hide()
-    elif context.scene == "simulation":
+    elif context.mode == "simulation":
         context.scenes.request("pause")
     elif _any_selected(context):
         context.select()
-    elif context.scene == STATICS:
+    elif context.mode == STATICS:
         context.notice = tr("Nothing is selected. Q leaves statics, F1 shows all keys.")
     else:
         context.notice = tr("Nothing is selected, and the run is paused. Space starts it, F1 shows all keys.")

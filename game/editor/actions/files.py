@@ -58,6 +58,7 @@ def _sheet(context: Context, pixel: Vector) -> None:
     shape, theory = context.document.shapes.shown, context.model.settings.theory
     lines = [shape] if shape is not None and not shape.swings else []
     with saving():
-        made = sheet(context.model, theory, lines, enveloped=context.view.enveloped is not None)
+        enveloped = context.view.enveloped
+        made = sheet(context.model, theory, lines, None if enveloped is None else enveloped.path)
         path = context.window.save("pinjoint-sheet.pdf", made)
     context.notice = tr("Sheet saved: {file}", file=path)

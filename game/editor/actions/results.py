@@ -179,24 +179,42 @@ def _next_shape(context: Context, pixel: Vector) -> None:
 @action(
     "next influence line",
     "ctrl+i",
-    "influence lines of a rod or particle",
+    "influence lines; along several rods: a moving force",
     while_drawing=False,
-    enabled=lambda context: len(context.selected) == 1,
+    enabled=attrgetter("selected"),
 )
 def _next_influence_line(context: Context, pixel: Vector) -> None:
     """The next influence line of what is selected: N, M and V of a rod, at the place where it was clicked in statics, else
-    at its ends and in its middle; reactions or displacements of a particle."""
+    at its ends and in its middle, and then what a force does that moves along it; reactions or displacements of a particle.
+    Of several rods, what a force does that moves along all of them."""
     from pinjoint.documents.influence import lines_of  # it imports scipy
 
     chosen, shapes = context.selected, context.document.shapes
-    if len(chosen) != 1 or not isinstance(chosen[0], Particle | Rod):
+    path = tuple(handle for handle in chosen if isinstance(handle, Rod))
+    if len(path) != len(chosen) > 1 or not any(isinstance(handle, Particle | Rod) for handle in chosen):
         raise Refusal(
-            "Select one rod or one particle first; then this draws its influence lines, one after the other."
+            "Select one rod or one particle first, whose influence lines this draws, one after the other, or several rods,"
+            " along which a force moves."
         )
+    if (moves := context.view.path == path != ()) or len(path) > 1:
+        _let_move(context, () if moves else path)
+        return
+    if context.view.path:
+        _let_move(context, ())
     pin = pinned(context)
     found = lines_of(context.model, chosen[0], None if pin is None else pin.distance)
     shapes.go_through(lambda: found, begins=shapes.shown not in found)
     context.view.shape = shapes.shown
+    if path and shapes.shown is None and context.scene == STATICS:
+        _let_move(context, path)
+
+
+def _let_move(context: Context, path: tuple[Rod, ...]) -> None:
+    """Show the envelope of a force that moves along a path; (): no more."""
+    if path and context.scene != STATICS:
+        raise Refusal("What a force does that moves along several rods is shown in statics; press Q first.")
+    context.view.envelope, context.view.path = bool(path), path
+    context.document.shapes.hide()
 
 
 @action("new slider", "ctrl+l", "add a slider for selected load or stiffness", while_drawing=False)
@@ -254,13 +272,16 @@ def _show_combination(context: Context, pixel: Vector) -> None:
 
 
 def _let_act(context: Context, name: str) -> None:
-    context.view.envelope = False
+    context.view.envelope, context.view.path = False, ()
     context.model.settings.combination = name
     if not context.view.legend:
         context.notice = acting(context.model)
 
 
-action("toggle envelope", pressed=attrgetter("view.envelope"))(toggle("envelope"))
+@action("toggle envelope", pressed=lambda context: context.view.envelope and not context.view.path)
+def _toggle_envelope(context: Context, pixel: Vector) -> None:
+    """That of all combinations."""
+    context.view.envelope, context.view.path = not context.view.envelope or bool(context.view.path), ()
 
 
 @action("edit combinations", "", "load combinations", while_drawing=False)

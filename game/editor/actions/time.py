@@ -40,9 +40,9 @@ MANY = 2000  # elements; the pace that suits larger models takes too long to fin
 )
 def _toggle_run(context: Context, pixel: Vector) -> None:
     """Run or pause; from statics, go on from the equilibrium, if it moves, or else begin undeformed."""
-    if context.scene == STATICS and not _begin_from_statics(context):
+    if context.mode == STATICS and not _begin_from_statics(context):
         return
-    context.scenes.request("pause" if context.scene == "simulation" else "simulation")
+    context.scenes.request("pause" if context.mode == "simulation" else "simulation")
 
 
 def _begin_from_statics(context: Context) -> bool:
@@ -154,7 +154,7 @@ def _restart(context: Context, pixel: Vector) -> None:
 @action("settle", "e", "find equilibrium at once", enabled=attrgetter("model.particles.count"))
 def _settle(context: Context, pixel: Vector) -> None:
     """Go to the static equilibrium under the full load."""
-    if context.scene == STATICS:
+    if context.mode == STATICS:
         raise Refusal("What is shown is the equilibrium already. Z changes the theory, Q leaves statics.")
     if context.model.particles.count == 0:
         raise Refusal("There is nothing to solve yet; draw a structure with P and L, or open one with D.")

@@ -19,7 +19,7 @@ action = actions_of("Draw", while_drawing=True)
 def takes_typing(context: Context) -> bool:
     """True if what is typed belongs to a tool: that of the drawing, or that in hand, except those that only click."""
     gesture = context.gesture
-    if context.scene not in LIVE or context.view.menu is not None or context.view.help:
+    if context.mode not in LIVE or context.view.menu is not None or context.view.help:
         return False
     if gesture is not None:
         return isinstance(gesture, Drawing) and not isinstance(gesture, DrawSupport)

@@ -277,6 +277,8 @@ class DrawArrow(Drawing):
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value, elements = self.value(context, pixel), [one for one in self.elements if one.exists]
+        if not self.typed and value in (0.0, (0.0, 0.0)):
+            raise Refusal("This arrow has no length: draw it farther, or type its value, 0 for none.")
         if elements:
             draw_load(context.model, elements, self.field, value)
             named, rods = elements[0].said, begun(heading(context.model, elements))
@@ -447,7 +449,10 @@ class DrawVelocity(DrawArrow):
 
 
 class DrawElement(Drawing):
-    """An element of a mod's kind with two points, from one to the other."""
+    """An element of a mod's kind, from one of its points to the next.
+
+    placed: its points (m) before the one where the present piece begins.
+    """
 
     kind: ClassVar[type[Handle]]
     key: ClassVar[str]
@@ -459,6 +464,7 @@ class DrawElement(Drawing):
 
     def __init__(self, context: Context, origin: Particle | Vector) -> None:
         super().__init__(context, origin)
+        self.placed: list[Vector] = []
         self.hint = tr(
             "{element}: click where it ends (or {key})     Esc cancel",
             element=tr(self.kind.noun),
@@ -471,6 +477,26 @@ class DrawElement(Drawing):
             return None
         return cls(context, snapped_to_points(context.model, context.view, pixel))
 
+    @classmethod
+    def use(cls, context: Context, pixel: Vector) -> None:
+        """The action of the tool; an element with one point is where it is clicked."""
+        if cls.kind.points[1:]:
+            super().use(context, pixel)
+        elif context.view.strip.contains(pixel):
+            take_up(context, cls.tool)
+        else:
+            point = snapped_to_points(context.model, context.view, pixel)
+            cls._make(context, [point], written.place(point, written.DIGITS))
+
+    @classmethod
+    def _make(cls, context: Context, points: list[Vector], said: str) -> None:
+        with context.model.transaction(tr("new {noun}", noun=tr(cls.kind.noun))):
+            [made] = context.model.create(
+                cls.kind, 1, **{name: [at] for name, at in zip(cls.kind.points, points, strict=True)}
+            )
+        context.select(made)
+        tell(context, said, made)
+
     def drop(self, context: Context, pixel: Vector) -> None:
         start, end = self.start(context), self._ending(context, pixel)
         if end == start:
@@ -478,14 +504,19 @@ class DrawElement(Drawing):
                 "The {element} would begin and end at the same point; click another point.",
                 element=tr(self.kind.noun),
             )
-        first, last = self.kind.points
-        [made] = context.model.create(self.kind, 1, **{first: [start], last: [end]})
-        context.select(made)
-        tell(context, _length_and_angle(start, end), made)
+        points = [*self.placed, start, end]
+        if len(points) < len(self.kind.points):
+            self.placed, self.origin, self.typed = points[:-1], end, ""
+            return
+        self.placed = []
+        self._make(context, points, _length_and_angle(start, end))
+
+    def following(self, context: Context) -> Drawing | None:
+        return self if self.placed else None
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         start, end = self.start(context), self._ending(context, pixel)
-        return Preview("rod", start, end, _length_and_angle(start, end))
+        return Preview("rod", start, end, _length_and_angle(start, end), before=tuple(self.placed))
 
     def _ending(self, context: Context, pixel: Vector) -> Vector:
         return self.end_typed(context, snapped_to_points(context.model, context.view, pixel))

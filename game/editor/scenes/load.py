@@ -25,7 +25,7 @@ ALL = "all of this section"  # the source of a tile that shows all tiles of its 
 # The first of each section; the others follow in alphabetical order.
 FIRST = (
     *("isostatic", "hyperstatic", "pendulum", "warren_bridge", "hyperstatic_yield", "tower", "ball_on_truss"),
-    *("portal", "eulers_columns", "rolled_cantilever", "ball_on_frame", "gerber_beam", "three_hinged_arch"),
+    *("portal", "eulers_columns", "portal_collapse", "rolled_cantilever", "ball_on_frame", "gerber_beam"),
     *("collision_iii", "newtons_cradle", "billiards_break", "pile", "staircase", "galperin_pi"),
 )
 

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -85,6 +86,11 @@ class Sheet:
     def arcs(self) -> Values:
         """The radius in pixels of the arrow of a moment around each particle, where one is drawn; else 0."""
         return np.zeros(len(self.centres))
+
+    @property
+    def session(self) -> Any:
+        """The running program that shows it; None where there is none, as in pictures beside a form."""
+        return None if self.view.session is None else self.view.session()
 
     def colour_of(self, name: str) -> Colour:
         """The colour of loads and results: of these, pale where what is shown is no equilibrium."""

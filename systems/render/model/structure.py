@@ -126,6 +126,11 @@ def draw_halos(sheet: Sheet) -> None:
             sheet.marks.append(Strokes(start, end, 2.0 * around + _rod_width(sheet), glow, ("rods", of)))
         chosen = sheet.chosen(sheet.tagged(tag, "particles"), sheet.particles)
         _draw_circles(sheet, sheet.particles[chosen], glow, glow, 0.0, around)
+    if near := sheet.view.near_buckling:
+        start, end, of = sheet.lines(sheet.chosen(np.array(near), sheet.rods))
+        glow = faded(theme.compression, HALO_OPACITY * (1.0 + sheet.view.swing) / 2.0)
+        sheet.marks.append(Strokes(start, end, 4.0 * around + _rod_width(sheet), glow, ("rods", of)))
+        sheet.explain("near buckling", start, end)
 
 
 def draw_rods(sheet: Sheet) -> None:

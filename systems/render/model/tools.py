@@ -41,6 +41,10 @@ def draw_preview(sheet: Sheet) -> list[Mark]:
     if not np.isfinite([start, end]).all():
         return []
     drawn = _KINDS[preview.kind](sheet, start, end)
+    if preview.before:
+        drawn += _lines(
+            sheet, sheet.view.camera.to_pixels([*preview.before, preview.start]), sheet.theme.sketch
+        )
     for ends in preview.along:
         drawn += _along(sheet, sheet.view.camera.to_pixels(ends), end - start)
     for joint in preview.joints:

@@ -14,7 +14,7 @@ from pinjoint.components.bent import farthest
 from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.cases import acting
 from pinjoint.components.field import on_screen
-from pinjoint.components.language import begun, listed, marked, plural, tr
+from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES, THEORIES
 from pinjoint.components.view import BETWEEN, LEAST_MODEL
@@ -246,6 +246,7 @@ MEANINGS = {
     "utilisation": marked("utilisation 0 to 100 %"),
     "axial utilisation": marked("utilisation 0 to 100 %, of N alone where the depth is unknown"),
     "first": marked("first to yield"),
+    "near buckling": marked("pulses: compression above 0.8 of the critical"),
     "slack": marked("slack cable"),
     "load": marked("load"),
     "reaction": marked("reaction"),
@@ -287,11 +288,9 @@ def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark],
     """
     v, u, theme = sheet.viewport, sheet.unit, sheet.theme
     meanings = meanings_of([*sheet.legend, *_theory(sheet)]) if sheet.view.legend and sheet.legend else {}
-    if meanings and (said := acting(sheet.model)):
-        shown = sheet.view.enveloped
-        meanings[_ACTING] = (
-            said if shown is None else tr("envelope of {names}", names=listed(shown.combinations))
-        )
+    shown = sheet.view.enveloped
+    if meanings and (said := acting(sheet.model) if shown is None else shown.said):
+        meanings[_ACTING] = said
     if not meanings or v.width < LEAST_MODEL * u:
         return [], heading_end
     plates, beside = _arranged(tuple(meanings.items()), theme, v.width, right - v.left, u)
@@ -346,9 +345,12 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
     if name in _SCALES:
         return scale_bar(theme, x, y, width, u)
     in_ink = ("slack", "hinge", "spring", "inextensible", "moment", "shear", "velocity", "inertia")
-    drawn_in = {"first": "yielding", "plastic hinge": "yielding", "deflected": "sketch"} | dict.fromkeys(
-        in_ink, "ink"
-    )
+    drawn_in = {
+        "first": "yielding",
+        "near buckling": "compression",
+        "plastic hinge": "yielding",
+        "deflected": "sketch",
+    } | dict.fromkeys(in_ink, "ink")
     colour = getattr(theme, drawn_in.get(name, name))
     ends = np.array([[x, y]]), np.array([[x + width, y]])
     if name == "hinge":
@@ -363,7 +365,7 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
         return [Stamps("spiral", ends[0] + [width / 2, 0.0], 6.0 * u, u, theme.ink, theme.hollow)]
     if name in ("load", "reaction", "inertia", "velocity"):
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
-    if name == "first":
+    if name in ("first", "near buckling"):
         return [Strokes(*ends, 9.0 * u, faded(colour, HALO_OPACITY))]
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]
