@@ -6,6 +6,8 @@ from argparse import Namespace
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
 from pinjoint.commands.analysis import Analysis
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
 from pinjoint.commands.output import Row, aligned, write_result
@@ -66,8 +68,8 @@ def answer(options: Namespace, model: Model, analysis: Analysis) -> int:
             name: {part: of_bounds(getattr(found, part), row) for part in _PARTS} for row, name in particles
         },
     }
-    held = supported(model).any(axis=1)
-    shown = [name for row, name in particles if held[row]]
+    held = np.flatnonzero(supported(model).any(axis=1)).tolist()
+    shown = [model.particles.names[row] for row in held]
     write_result(options, data, _rows, lambda data: _lines(data, shown, found.said))
     return NOT_ANSWERED if found.without else ANSWERED
 
