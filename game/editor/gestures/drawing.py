@@ -465,11 +465,11 @@ class DrawElement(Drawing):
     def __init__(self, context: Context, origin: Particle | Vector) -> None:
         super().__init__(context, origin)
         self.placed: list[Vector] = []
-        self.hint = tr(
-            "{element}: click where it ends (or {key})     Esc cancel",
-            element=tr(self.kind.noun),
-            key=self.key.upper(),
-        )
+        named = {"element": tr(self.kind.noun), "key": self.key.upper()}
+        if self.kind.points[2:]:
+            self.hint = tr("{element}: click its further points (or {key})     Esc cancel", **named)
+        else:
+            self.hint = tr("{element}: click where it ends (or {key})     Esc cancel", **named)
 
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
