@@ -59,6 +59,7 @@ class Statics:
         self._sought: tuple[object, ...] = ()  # what it follows from that was sought last
         self._solving: Behind[Settlement] | None = None
         self._comparing: tuple[int, Behind[Settlement]] | None = None  # with the revision
+        self._way: tuple[int, Behind[Settlement]] | None = None  # the same, of states on the way
         self._seen = -1  # the revision of the model up to which it is known that nothing changed
         self._columns: Mapping[str, Column] = {}
         self._settlement: Settlement | None = None
@@ -322,14 +323,29 @@ class Statics:
         self._columns = self._settlement.final.shown
         self.motion = last_motion(self._model, self._settlement)
 
-    def on_the_way(self, parts: int) -> Iterator[float]:
-        """Let the model show the states on the way through the load steps, each in so many parts; yields load factors."""
+    def on_the_way(self, parts: int) -> Iterator[float] | None:
+        """Let the model show the states on the way through the load steps, each in so many parts; yields load factors.
+
+        None while they are being solved, in the part of a frame that a window has for that.
+        """
         model, steps = self._model, (0.0, *self._model.settings.load_steps)
         shares = np.arange(1, parts + 1) / parts
         factors = [0.0, *(a + share * (b - a) for a, b in pairwise(steps) for share in shares)]
+        if self._way is None or self._way[0] != self.revision:
+            if self._way is not None:
+                self._way[1].give_up()
+            self._way = self.revision, Behind(partial(self._settled, None, factors))
+        with model.own_state():
+            if not self._way[1].part(self.part):
+                return None
+        (_, solved), self._way = self._way, None
+        return self._shown_in_turn(solved.result())
+
+    def _shown_in_turn(self, settlement: Settlement) -> Iterator[float]:
+        model = self._model
         outer = model.solution
         try:
-            for state in self.settled(load_factors=factors).states:
+            for state in settlement.states:
                 if state.balanced:
                     model.show(Shown(state.shown, model.next_revision(), self.first_order, state.load_factor))
                     yield state.load_factor

@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_195,
+    "lines": 72_218,
     "files": 385,
     "names": 3_973,  # functions, classes and constants of modules
     "public names": 2_365,
     "numbers": 1_537,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 59_651,
+    "lines of tests": 59_680,
 }
 
 
