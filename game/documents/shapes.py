@@ -159,19 +159,12 @@ def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
     from pinjoint.systems.statics.theory import Indeterminacy, mechanisms
 
     motions, count = mechanisms(model), Indeterminacy.of(model).mechanisms
-    return [
-        _shape(
-            model,
-            tr(
-                "Mechanism {number} of {count}: moves {moving}",
-                number=number,
-                count=count,
-                moving=describe_motion(model, motion[None]),
-            ),
-            motion,
-        )
-        for number, motion in enumerate(motions[:most], start=1)
-    ]
+    shapes = []
+    for number, motion in enumerate(motions[:most], start=1):
+        moving = describe_motion(model, motion[None])
+        title = tr("Mechanism {number} of {count}: moves {moving}", number=number, count=count, moving=moving)
+        shapes.append(_shape(model, title, motion))
+    return shapes
 
 
 def buckling_shapes(model: Model, most: int = LOWEST, *, elastic: bool = False) -> list[Shape]:
@@ -245,17 +238,11 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     parts = None
     if divided and structure.bending is not None:
         parts = Parts(structure.position, structure.ends, structure.bending.fixity)
-    return [
-        _shape(
-            model,
-            tr(title, number=number, count=found.total - still, hertz=written.number(hertz)),
-            motion,
-            places,
-            found.note,
-            parts,
-        )
-        for number, (hertz, motion) in enumerate(modes[:most], start=1)
-    ]
+    shapes, count = [], found.total - still
+    for number, (hertz, motion) in enumerate(modes[:most], start=1):
+        said = tr(title, number=number, count=count, hertz=written.number(hertz))
+        shapes.append(_shape(model, said, motion, places, found.note, parts))
+    return shapes
 
 
 def collapse_shapes(model: Model, found: LimitLoad | None = None) -> list[Shape]:

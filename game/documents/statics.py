@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -133,17 +133,16 @@ class Statics:
         model = self._model
         moving = bool(model.particles.count and model.tables["particles"].storage("velocity").any())
         loose = np.flatnonzero(~nodes(model) & self.first_order)
-        return [
-            tr("Statics leaves out velocities.") if moving and model.rods.count else "",
-            plural(
+        said = [tr("Statics leaves out velocities.")] if moving and model.rods.count else []
+        if len(loose) and model.rods.count:
+            told = plural(
                 "Statics leaves out {name}, which has no rods.",
                 "Statics leaves out {count} particles without rods.",
                 len(loose),
                 name=model.particles.names[loose[0]],
             )
-            if len(loose) and model.rods.count
-            else "",
-        ]
+            said.append(told)
+        return said
 
     # --- finding -------------------------------------------------------------------------------------
 
@@ -212,16 +211,13 @@ class Statics:
             return self._settled(theory, load_factors, acting)
 
     def _settled(
-        self,
-        theory: str | None = None,
-        load_factors: Sequence[float] | float | None = None,
-        acting: Model | None = None,
+        self, theory: str | None = None, factors: Any = None, acting: Model | None = None
     ) -> Settlement:
         from pinjoint.systems.statics.settle import settle
         from pinjoint.systems.statics.state import Start
 
         model, settings = acting or self._model, self._model.settings
-        factors = settings.load_steps if load_factors is None else load_factors
+        factors = settings.load_steps if factors is None else factors
         return settle(model, factors, theory or settings.theory, Start.undeformed(model, self._permanent()))
 
     def envelope(

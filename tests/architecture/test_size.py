@@ -13,11 +13,11 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_229,
+    "lines": 71_988,
     "files": 385,
-    "names": 3_973,  # functions, classes and constants of modules
+    "names": 3_970,  # functions, classes and constants of modules
     "public names": 2_365,
-    "numbers": 1_537,  # other than 0, 1 and 2, in constants and defaults
+    "numbers": 1_533,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
     "lines of tests": 59_722,
 }
