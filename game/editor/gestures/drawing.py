@@ -277,7 +277,8 @@ class DrawArrow(Drawing):
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value, elements = self.value(context, pixel), [one for one in self.elements if one.exists]
-        if not self.typed and value in (0.0, (0.0, 0.0)):
+        away = math.dist(context.view.camera.to_pixels(self.start(context)), pixel) / context.view.pixel_ratio
+        if not self.typed and value in (0.0, (0.0, 0.0)) and away <= PARTICLE_REACH:
             raise Refusal("This arrow has no length: draw it farther, or type its value, 0 for none.")
         if elements:
             draw_load(context.model, elements, self.field, value)
