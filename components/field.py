@@ -75,7 +75,7 @@ class Field(Generic[T]):
     unit: unit inside the program and in files; `shown` is the usual (unit, factor) on screen, by default the same.
     title: what a person calls it; by default its name with spaces.
     dtype: float, bool, int, str, "reference" (row of another table, stored as uint32) or object.
-    shape: () or (2,); wider where it is computed. axes: what its parts are called.
+    shape: () or (2,); wider where it is computed. axes: what its parts are called, as many as it has.
     default: what an element has that is given none; left out, None if that is allowed, else 0, False or "".
     minimum, maximum: inclusive limits; `above`: exclusive lower limit. Numbers that a person makes have limits
         anyway, so that all can be computed with: LARGEST, and SMALLEST where they are above 0.
@@ -97,7 +97,7 @@ class Field(Generic[T]):
     default: Any = ...
     dtype: Any = float
     shape: tuple[int, ...] = ()
-    axes: tuple[str, ...] = ("x", "y")
+    axes: tuple[str, ...] = ()
     role: Role = Role.DOCUMENT
     shown: tuple[str, float] = ("", 0.0)
     minimum: float | None = None
@@ -115,6 +115,8 @@ class Field(Generic[T]):
     component: str = field(default="", init=False)
 
     def __post_init__(self) -> None:
+        self.shape = self.shape or (len(self.axes),) * bool(self.axes)
+        self.axes = self.axes or ("x", "y")
         if self.nullable and (self.shape or self.dtype in (int, bool, "reference")):
             raise WrongValue(
                 "A Field that can be None must be one float, text or object ('{field}' is not).",
@@ -390,7 +392,7 @@ ENDS = (marked("start"), marked("end"))  # of rods: the parts of what each end h
 look = partial(Field, role=Role.LOOK)
 state = partial(Field, role=Role.STATE)
 derived = partial(Field, role=Role.DERIVED)
-by_end = partial(derived, shape=(2,), axes=ENDS)
+by_end = partial(derived, axes=ENDS)
 if_known = partial(Field, nullable=True, above=0.0)
 
 

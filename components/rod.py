@@ -164,13 +164,11 @@ class Rod(Handle):
     )
     hinged: Field[tuple[bool, bool]] = Field(
         dtype=bool,
-        shape=(2,),
         axes=ENDS,
         doc="Ends that turn freely; the others are rigidly joined. Without bending stiffness both turn freely.",
     )
     end_springs: Field[Vector] = Field(
         "kN·m/rad",
-        shape=(2,),
         axes=ENDS,
         minimum=0.0,
         doc="Stiffness of springs that join its ends to what turns with their particles, in place of hinges or rigid"
@@ -192,14 +190,13 @@ class Rod(Handle):
     )
     plastic_strain: Field[float] = state(doc="Permanent part of the strain.")
     plastic_rotation: Field[Vector] = state(
-        "rad", shape=(2,), axes=ENDS, doc="Permanent part of the slopes of its ends, in plastic hinges."
+        "rad", axes=ENDS, doc="Permanent part of the slopes of its ends, in plastic hinges."
     )
     yielded_at: Field[float | None] = state(
         "s", nullable=True, absent="not yet", doc="When it first yielded in this run."
     )
     hinge_formed_at: Field[Vector] = state(
         "s",
-        shape=(2,),
         axes=ENDS,
         default=(-1.0, -1.0),
         doc="When plastic hinges first formed at its ends in this run; −1: not yet.",
@@ -233,17 +230,14 @@ class Rod(Handle):
     )
     end_stiffness: Field[tuple[float, float, float]] = derived(
         "kN·m",
-        shape=(3,),
         axes=("ss", "se", "ee"),
         doc="End moments per slope: EI/L₀ (4, 2, 4), with one hinge 3 EI/L₀ at the other end; less with springs.",
     )
     end_damping: Field[tuple[float, float, float]] = derived(
-        "kN·m·s", shape=(3,), axes=("ss", "se", "ee"), doc="End moments per rate of slope, likewise."
+        "kN·m·s", axes=("ss", "se", "ee"), doc="End moments per rate of slope, likewise."
     )
     bowing: Field[tuple[float, float, float]] = derived(
-        shape=(3,),
-        axes=("ss", "se", "ee"),
-        doc="Twice the strain of the axis per slopes: its share of bending.",
+        axes=("ss", "se", "ee"), doc="Twice the strain of the axis per slopes: its share of bending."
     )
     fixity: Field[Vector] = by_end(
         doc="How firmly its ends are joined: 0 by a hinge, 1 rigidly, k/(k + 3 EI/L₀) by a spring."
@@ -256,7 +250,6 @@ class Rod(Handle):
     )
     span_load: Field[tuple[float, ...]] = derived(
         "kN·m",
-        shape=(7,),
         axes=("start x", "start y", "start turn", "end x", "end y", "end turn", "turn"),
         doc="Work of what acts between its ends, by unit slopes of these: forces × deflections, couples × rotations; turn:"
         " couples.",
@@ -301,7 +294,6 @@ class Rod(Handle):
     )
     largest_moment: Field[Vector] = derived(
         "kN·m, m",
-        shape=(2,),
         axes=(marked("value"), marked("distance")),
         doc="The bending moment of largest size, and how far from the start.",
     )

@@ -164,14 +164,8 @@ class SliderStack:
             return []
         row, bottom = (HEIGHT + GAP) * unit, canvas.bottom - (self.above + EDGE) * unit
         most = max(int((SHARE * canvas.height - (self.above + EDGE) * unit) / row), 0)
+        left, tops = canvas.left + EDGE * unit, (bottom - (n + 1) * row + GAP * unit for n in range(most))
         return [
-            Place(
-                canvas.left + EDGE * unit,
-                bottom - (n + 1) * row + GAP * unit,
-                width,
-                HEIGHT * unit,
-                control,
-                unit,
-            )
-            for n, control in enumerate(self.controls[:most])
+            Place(left, top, width, HEIGHT * unit, control, unit)
+            for top, control in zip(tops, self.controls, strict=False)
         ]

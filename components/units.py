@@ -63,25 +63,8 @@ _ON_SCREEN = (
 )
 # Of these, an error names those that fit.
 _USUAL = (
-    *(
-        "m",
-        "cm",
-        "mm",
-        "N",
-        "kN",
-        "MN",
-        "N·m",
-        "kN·m",
-        "N/m",
-        "kN/m",
-        "N/mm",
-        "kg",
-        "t",
-        "kg/m",
-        "s",
-        "rad",
-        "°",
-    ),
+    *("m", "cm", "mm", "N", "kN", "MN", "N·m", "kN·m", "N/m", "kN/m", "N/mm"),
+    *("kg", "t", "kg/m", "s", "rad", "°"),
     *("MPa", "GPa", "m²", "cm²", "mm²", "m³", "cm³", "m⁴", "cm⁴", "m/s", "km/h", "K", "%"),
 )
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from fnmatch import filter as matching
+from inspect import isfunction
 from pathlib import Path
 from typing import Any
 
@@ -463,11 +464,14 @@ class Trial:
         for base in reversed(made.__mro__[: made.__mro__.index(role)]):
             own |= {name: value for name, value in vars(base).items() if name[0] != "_"}
         free = {name for name in declared - own.keys() if name[0] != "_"}
-        for name in [
-            name for name, value in own.items() if not isinstance(value, Field) and name not in declared
-        ]:
-            turned = [other for other in free if sorted(other) == sorted(name)]
-            if near := turned[0] if turned else nearest(name, free, NEAR):
+        methods = {name for name in free if isfunction(getattr(role, name, None))}
+        for name, value in own.items():
+            if isinstance(value, Field) or name in declared:
+                continue
+            is_method = isinstance(value, staticmethod) or (isfunction(value) and not hasattr(value, "py_func"))
+            alike = methods if is_method else free - methods
+            turned = [other for other in alike if sorted(other) == sorted(name)]
+            if near := turned[0] if turned else nearest(name, alike, NEAR):
                 told = {"kind": made.__name__, "name": name, "near": near}
                 self._note(tr("{kind}.{name} means nothing; did you mean '{near}'?", **told))
         if not issubclass(made, Component | Handle):

@@ -31,6 +31,7 @@ from pinjoint.tables import Column, Table
 _FLAT = 1.6  # times as wide as high: of such structures each figure has a row of its own
 _BESIDE = 20  # rods up to which their table stands beside figures
 _SHORT, _BEGUN = 24, 100.0  # rows of tables that pages do not part; points for the beginning of another
+BEFORE = 1e-6  # of the collapse load: a sheet of a structure that collapses shows it by so much less
 _LARGER = 1.2  # type in figures, that of reports being 1
 
 
@@ -43,7 +44,7 @@ def sheet(
 ) -> bytes:
     """The sheet of a model, solved from its undeformed beginning, as a PDF file. Raises NoSheet.
 
-    shapes: drawn over it, too, such as influence lines. path: of rods, along which a force moves whose envelope is
+    shapes: drawn over it, too, such as modes and influence lines. path: of rods, along which a force moves whose envelope is
     drawn; (): that of all combinations, or ValueError.
     """
     solved = Solved(model, theory, path)
@@ -65,12 +66,19 @@ class Solved:
         permanent = Start.present(copy).permanent * (copy.clock.time == 0.0)
         statics = Statics(copy, lambda: permanent)
         settlement = statics.settlement
+        collapsed = settlement if settlement is not None and settlement.status == "collapse" else None
+        if collapsed is not None:  # what it bears just before is an equilibrium
+            steps, factor = copy.settings.load_steps, collapsed.final.load_factor
+            copy.settings.load_steps = (*steps[: len(collapsed.states) - 1], (1.0 - BEFORE) * factor)
+            settlement = statics.settlement
         if settlement is None or not statics.balanced:
             reason = statics.message
             raise NoSheet("There is no sheet without an equilibrium. {reason}", reason=reason)
         _, note = settlement.beside(left_out_of_statics(copy))
         limit = statics.limit_load
-        self.said = joined([settlement.message, note, *([limit.message, limit.divides(copy)] if limit else [])])
+        self.said = joined(
+            [(collapsed or settlement).message, note, *([limit.message, limit.divides(copy)] if limit else [])]
+        )
         self.collapse = collapse_shapes(copy, limit) if limit else []
         self.steps = collapse_steps(copy, limit) if limit and theory == FIRST_ORDER else None
         copy.show(statics)
@@ -92,8 +100,9 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
         if bends(model) or quantity == AXIAL:
             figures.append(draw(title, diagrams=quantity))
     figures.append(draw(tr("Deflected shape"), moved=True))
-    figures += [draw(shape.title, over=replace(shape, title="")) for shape in solved.collapse]
-    figures += [draw(shape.title, over=shape) for shape in shapes]
+    known = {over.title for over in solved.collapse}
+    for over in (*solved.collapse, *(over for over in shapes if over.title not in known)):
+        figures.append(draw(over.title, over=replace(over, title="") if over.swings else over))
     if (envelope := solved.envelope) is not None:
         for quantity, title in diagram_titles().items():
             if bends(model) or quantity == AXIAL:

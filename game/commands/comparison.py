@@ -84,7 +84,9 @@ def compare(session: Headless, name: str, limit: float | None, *, simulate: bool
     if can_collapse(model):
         found["limit_load"] = LimitLoad.of(model).record(model)
     found["compression_members"] = _compression_members(model, theory.exact or theory.linear)
-    found["message"] = "\n".join([*_left_out(session), *_messages(found)])
+    laws = ", ".join(left_out_of_statics(model))
+    left_out = [tr("Theory leaves out the laws of mods: {laws}.", laws=laws)] if laws else []
+    found["message"] = "\n".join([*left_out, *_messages(found)])
     return found
 
 
@@ -100,12 +102,6 @@ def _run_to_rest(session: Headless, limit: float | None) -> str:
         if session.time >= DEFAULT_LIMIT:
             return session.run(until="rest", limit=0.0)
     return LEFT_OUT
-
-
-def _left_out(session: Headless) -> Iterator[str]:
-    """A sentence about the laws of mods that act in the simulation and not in theory, if there are some."""
-    if laws := left_out_of_statics(session.model):
-        yield tr("Theory leaves out the laws of mods: {laws}.", laws=", ".join(laws))
 
 
 def _by_element(comparison: Comparison | None) -> dict[str, dict[str, Any]]:

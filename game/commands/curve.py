@@ -115,19 +115,13 @@ def _why_it_ends(model: Model, curve: Curve, most: int) -> str:
         return tr(
             "The curve ends at the load factor {factor:.6g}: no further equilibrium was found.", factor=factor
         )
-    ends = tr("The curve ends where it begins, at the load factor {factor:.6g}.", factor=factor)
-    return joined([ends, _why_nothing_follows(model)])
-
-
-def _why_nothing_follows(model: Model) -> str:
-    """Why a curve ends where it begins: the motion of a mechanism in words; "" if the structure is none."""
-    moving = mechanisms(model)
-    if not len(moving):
-        return ""
-    return tr(
-        "The structure is a mechanism: {moving} can move. Add rods or supports there.",
-        moving=describe_motion(model, moving),
-    )
+    why = ""
+    if len(moving := mechanisms(model)):
+        why = tr(
+            "The structure is a mechanism: {moving} can move. Add rods or supports there.",
+            moving=describe_motion(model, moving),
+        )
+    return joined([tr("The curve ends where it begins, at the load factor {factor:.6g}.", factor=factor), why])
 
 
 def _data(model: Model, curve: Curve, names: Sequence[str] | None) -> dict[str, Any]:

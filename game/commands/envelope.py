@@ -25,7 +25,7 @@ _AXES = ("x", "y", "rotation")
 
 def answer(options: Namespace, model: Model, analysis: Analysis) -> int:
     """Write the envelope of a model; returns the exit status, 1 where a combination has no solution."""
-    from pinjoint.systems.statics.envelope import Envelope
+    from pinjoint.systems.statics.envelope import Bounds, Envelope
     from pinjoint.systems.statics.events import NoEquilibrium
     from pinjoint.systems.statics.state import Start
 
@@ -40,41 +40,33 @@ def answer(options: Namespace, model: Model, analysis: Analysis) -> int:
         tell(str(reason))
         return NOT_ANSWERED
 
-    def of_bounds(bounds: Any, at: Any) -> dict[str, Any]:
+    def of_bounds(bounds: Bounds, at: Any) -> dict[str, Any]:
         made = {}
         for side, bound in enumerate(_BOUNDS):
             made[bound] = bounds.values[side][at]
-            made[f"{bound}_in"] = [
-                found.named(number) or None for number in bounds.governing[side][at].tolist()
-            ]
+            names = map(found.named, bounds.governing[side][at].tolist())
+            made[f"{bound}_in"] = [name or None for name in names]
         return made
 
-    rods = {
-        name: {
-            letter: {
-                "distance": found.shares[letter][row] * found.length[row],
-                **of_bounds(found.forces[letter], row),
-            }
-            for letter in DIAGRAMS
-        }
-        for row, name in enumerate(model.rods.names)
-    }
-    particles = {
-        name: {part: of_bounds(getattr(found, part), row) for part in _PARTS}
-        for row, name in enumerate(model.particles.names)
-    }
-    extremes = {
-        name: {letter: [one._asdict() for one in found.extremes(letter, row)] for letter in DIAGRAMS}
-        for row, name in enumerate(model.rods.names)
-    }
+    def along(row: int, letter: str) -> dict[str, Any]:
+        return {"distance": found.shares[letter][row] * found.length[row]} | of_bounds(
+            found.forces[letter], row
+        )
+
+    rods, particles = (list(enumerate(table.names)) for table in (model.rods, model.particles))
     data = {
         "model": options.model,
         "theory": analysis.theory,
         "combinations": list(found.combinations),
         "without": dict(found.without),
-        "extremes": extremes,
-        "rods": rods,
-        "particles": particles,
+        "extremes": {
+            name: {letter: [one._asdict() for one in found.extremes(letter, row)] for letter in DIAGRAMS}
+            for row, name in rods
+        },
+        "rods": {name: {letter: along(row, letter) for letter in DIAGRAMS} for row, name in rods},
+        "particles": {
+            name: {part: of_bounds(getattr(found, part), row) for part in _PARTS} for row, name in particles
+        },
     }
     held = np.flatnonzero(supported(model).any(axis=1)).tolist()
     shown = [model.particles.names[row] for row in held]
@@ -94,9 +86,8 @@ def _rows(data: Mapping[str, Any]) -> Iterator[Row]:
     for name, parts in data["particles"].items():
         for part, units in _PARTS.items():
             for bound in _BOUNDS:
-                for axis, unit, value, combination in zip(
-                    _AXES, units, parts[part][bound], parts[part][f"{bound}_in"], strict=True
-                ):
+                of_part = parts[part][bound], parts[part][f"{bound}_in"]
+                for axis, unit, value, combination in zip(_AXES, units, *of_part, strict=True):
                     yield "particle", name, f"{part}_{axis}", "", bound, value, unit, combination or ""
 
 
@@ -105,24 +96,18 @@ def _lines(data: Mapping[str, Any], supports: list[str], said: str) -> Iterator[
     yield f"{data['model']}: {said}"
     for name, reason in data["without"].items():
         yield tr("{combination} has no solution: {reason}", combination=name, reason=reason)
-    heads = [tr("least"), tr("in"), tr("most"), tr("in")]
     yield ""
-    table: list[Row] = [("", "", heads[0], "m", heads[1], heads[2], "m", heads[3])]
+    table: list[Row] = [("", "", tr("least"), "m", tr("in"), tr("most"), "m", tr("in"))]
     for name, forces in data["extremes"].items():
         for letter, (low, high) in forces.items():
-            cells = [(one["value"], one["distance"], one["combination"]) for one in (low, high)]
-            table.append((name, f"{letter} {_UNITS[letter]}", *cells[0], *cells[1]))
+            table.append((name, f"{letter} {_UNITS[letter]}", *low.values(), *high.values()))
     yield from aligned(table)
     yield ""
-    table = [("", "", *heads)]
+    table = [("", "", tr("least"), tr("in"), tr("most"), tr("in"))]
     for name in supports:
-        found = data["particles"][name]["reaction"]
-        for place, (axis, unit) in enumerate(zip(_AXES, _PARTS["reaction"], strict=True)):
-            if found["least"][place] or found["most"][place]:
-                bounds = [
-                    cell
-                    for bound in _BOUNDS
-                    for cell in (found[bound][place], found[f"{bound}_in"][place] or "")
-                ]
-                table.append((name, f"{axis} {unit}", *bounds))
+        for axis, unit, *cells in zip(
+            _AXES, _PARTS["reaction"], *data["particles"][name]["reaction"].values(), strict=True
+        ):
+            if cells[0] or cells[2]:
+                table.append((name, f"{axis} {unit}", *("" if cell is None else cell for cell in cells)))
     yield from aligned(table)

@@ -131,7 +131,7 @@ class Influence:
     def shape(self, model: Model) -> Shape:
         """The line drawn over the model, below it where a force downwards makes the quantity greater, with its values."""
         least, most = (
-            f"{written.number(value)} ({rod}, x = {written.number(x)} m)"
+            f"{written.number(value)} ({model.rods[rod].said}, x = {written.length(x, written.DIGITS)})"
             for _, (value, rod, x) in self.extremes(model)
         )
         title = tr(
@@ -175,7 +175,7 @@ class Influence:
     def _said(self, model: Model) -> str:
         """The quantity as a person calls it: "bending moment at the start of AB", "reaction y of A"."""
         table, _, title = QUANTITIES[self.quantity]
-        of = model.tables[table].names[self.row]
+        of = model.tables[table][self.row].said
         if self.quantity in FORCES and 0.0 < self.share < 1.0:
             x = written.length(self.share * model.rods.original_length[self.row], written.DIGITS)
             return tr("{quantity} of {rod} at {place} from its start", quantity=tr(title), rod=of, place=x)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +19,7 @@ from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.rod import can_collapse
+from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.view import Shape
 from pinjoint.components.wording import cut
 from pinjoint.documents.assessment import LARGEST
@@ -157,19 +159,12 @@ def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
     from pinjoint.systems.statics.theory import Indeterminacy, mechanisms
 
     motions, count = mechanisms(model), Indeterminacy.of(model).mechanisms
-    return [
-        _shape(
-            model,
-            tr(
-                "Mechanism {number} of {count}: moves {moving}",
-                number=number,
-                count=count,
-                moving=describe_motion(model, motion[None]),
-            ),
-            motion,
-        )
-        for number, motion in enumerate(motions[:most], start=1)
-    ]
+    shapes = []
+    for number, motion in enumerate(motions[:most], start=1):
+        moving = describe_motion(model, motion[None])
+        title = tr("Mechanism {number} of {count}: moves {moving}", number=number, count=count, moving=moving)
+        shapes.append(_shape(model, title, motion))
+    return shapes
 
 
 def buckling_shapes(model: Model, most: int = LOWEST, *, elastic: bool = False) -> list[Shape]:
@@ -243,17 +238,11 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     parts = None
     if divided and structure.bending is not None:
         parts = Parts(structure.position, structure.ends, structure.bending.fixity)
-    return [
-        _shape(
-            model,
-            tr(title, number=number, count=found.total - still, hertz=written.number(hertz)),
-            motion,
-            places,
-            found.note,
-            parts,
-        )
-        for number, (hertz, motion) in enumerate(modes[:most], start=1)
-    ]
+    shapes, count = [], found.total - still
+    for number, (hertz, motion) in enumerate(modes[:most], start=1):
+        said = tr(title, number=number, count=count, hertz=written.number(hertz))
+        shapes.append(_shape(model, said, motion, places, found.note, parts))
+    return shapes
 
 
 def collapse_shapes(model: Model, found: LimitLoad | None = None) -> list[Shape]:
@@ -270,12 +259,17 @@ def collapse_shapes(model: Model, found: LimitLoad | None = None) -> list[Shape]
 
 
 def last_motion(model: Model, settlement: Settlement) -> Shape | None:
-    """The motion into which the last state passes that statics finds; None where that is an equilibrium."""
+    """The motion into which the last state passes that statics finds; None where that is an equilibrium.
+
+    In first order nothing bends in it: rods stay straight between hinges, plastic ones included.
+    """
     motions = [event.motion for event in settlement.events if event.motion is not None]
     if settlement.final.balanced or not motions:
         return None
     said = tr("A mechanism: nothing resists this motion")
-    return _shape(model, said, motions[-1], settlement.final.displacement)
+    straight = model.settings.theory == FIRST_ORDER
+    parts = replace(Parts.of(model), fixity=0.0 * model.rods.fixity) if straight else None
+    return _shape(model, said, motions[-1], settlement.final.displacement, parts=parts)
 
 
 def numbered(model: Model, kind: str, number: int) -> Shape:

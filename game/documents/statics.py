@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -59,6 +59,7 @@ class Statics:
         self._sought: tuple[object, ...] = ()  # what it follows from that was sought last
         self._solving: Behind[Settlement] | None = None
         self._comparing: tuple[int, Behind[Settlement]] | None = None  # with the revision
+        self._way: tuple[int, Behind[Settlement]] | None = None  # the same, of states on the way
         self._seen = -1  # the revision of the model up to which it is known that nothing changed
         self._columns: Mapping[str, Column] = {}
         self._settlement: Settlement | None = None
@@ -132,17 +133,16 @@ class Statics:
         model = self._model
         moving = bool(model.particles.count and model.tables["particles"].storage("velocity").any())
         loose = np.flatnonzero(~nodes(model) & self.first_order)
-        return [
-            tr("Statics leaves out velocities.") if moving and model.rods.count else "",
-            plural(
+        said = [tr("Statics leaves out velocities.")] if moving and model.rods.count else []
+        if len(loose) and model.rods.count:
+            told = plural(
                 "Statics leaves out {name}, which has no rods.",
                 "Statics leaves out {count} particles without rods.",
                 len(loose),
                 name=model.particles.names[loose[0]],
             )
-            if len(loose) and model.rods.count
-            else "",
-        ]
+            said.append(told)
+        return said
 
     # --- finding -------------------------------------------------------------------------------------
 
@@ -211,16 +211,13 @@ class Statics:
             return self._settled(theory, load_factors, acting)
 
     def _settled(
-        self,
-        theory: str | None = None,
-        load_factors: Sequence[float] | float | None = None,
-        acting: Model | None = None,
+        self, theory: str | None = None, factors: Any = None, acting: Model | None = None
     ) -> Settlement:
         from pinjoint.systems.statics.settle import settle
         from pinjoint.systems.statics.state import Start
 
         model, settings = acting or self._model, self._model.settings
-        factors = settings.load_steps if load_factors is None else load_factors
+        factors = settings.load_steps if factors is None else factors
         return settle(model, factors, theory or settings.theory, Start.undeformed(model, self._permanent()))
 
     def envelope(
@@ -322,14 +319,29 @@ class Statics:
         self._columns = self._settlement.final.shown
         self.motion = last_motion(self._model, self._settlement)
 
-    def on_the_way(self, parts: int) -> Iterator[float]:
-        """Let the model show the states on the way through the load steps, each in so many parts; yields load factors."""
+    def on_the_way(self, parts: int) -> Iterator[float] | None:
+        """Let the model show the states on the way through the load steps, each in so many parts; yields load factors.
+
+        None while they are being solved, in the part of a frame that a window has for that.
+        """
         model, steps = self._model, (0.0, *self._model.settings.load_steps)
         shares = np.arange(1, parts + 1) / parts
         factors = [0.0, *(a + share * (b - a) for a, b in pairwise(steps) for share in shares)]
+        if self._way is None or self._way[0] != self.revision:
+            if self._way is not None:
+                self._way[1].give_up()
+            self._way = self.revision, Behind(partial(self._settled, None, factors))
+        with model.own_state():
+            if not self._way[1].part(self.part):
+                return None
+        (_, solved), self._way = self._way, None
+        return self._shown_in_turn(solved.result())
+
+    def _shown_in_turn(self, settlement: Settlement) -> Iterator[float]:
+        model = self._model
         outer = model.solution
         try:
-            for state in self.settled(load_factors=factors).states:
+            for state in settlement.states:
                 if state.balanced:
                     model.show(Shown(state.shown, model.next_revision(), self.first_order, state.load_factor))
                     yield state.load_factor

@@ -223,35 +223,21 @@ def _of_canvas(context: Context) -> Groups:
     groups: list[list[Entry]] = [
         [
             ("place", marked("new particle here")),
-            "rod",
-            "rigid",
-            *of_mods(draw=True),
+            *("rod", "rigid", *of_mods(draw=True)),
             ("paste", marked("paste here")),
             "select all",
         ],
         ["toggle run", "restart", "settle", "toggle statics", "next theory", "displacement method"],
         [
-            *(
-                "toggle diagrams",
-                "toggle undeformed",
-                "toggle free bodies",
-                "toggle utilisation",
-                "next shape",
-                "next influence line",
-            ),
+            *("toggle diagrams", "toggle undeformed", "toggle free bodies", "toggle utilisation"),
+            *("next shape", "next influence line"),
             *("toggle table", "toggle theory", "toggle energy", "toggle events"),
         ],
         [*of_mods(draw=False)],
         ["fit", "new grid", "next grid", "toggle legend", "next theme", "next language"],
         [
-            "environment",
-            "next units",
-            "toggle full screen",
-            "toggle help",
-            "screenshot",
-            "picture as svg",
-            "picture as pdf",
-            "sheet",
+            *("environment", "next units", "toggle full screen", "toggle help"),
+            *("screenshot", "picture as svg", "picture as pdf", "sheet"),
         ],
     ]
     if context.view.strip.width == 0:

@@ -152,7 +152,10 @@ class Probes:
         if statics.settlement is None or statics.is_late or session.gesture is not None:  # a drag goes on
             return
         behind = [probe for probe in self.of(session) if probe.solved != statics.revision]
-        for number, _ in enumerate(statics.on_the_way(PARTS) if behind else ()):
+        way = statics.on_the_way(PARTS) if behind else None
+        if way is None:
+            return
+        for number, _ in enumerate(way):
             for probe in behind:
                 probe.sample(session, float(number))
         for probe in behind:

@@ -20,11 +20,8 @@ _ACTING = {  # what loads, moves or strains a structure, by table
     "environment": ("force", "acceleration"),
     "particles": ("force", "moment", "acceleration", "displacement", "rotation"),
     "rods": (
-        "distributed_force",
-        "plastic_strain",
-        "plastic_rotation",
-        "temperature_change",
-        "temperature_gradient",
+        *("distributed_force", "temperature_change", "temperature_gradient"),
+        *("plastic_strain", "plastic_rotation"),
     ),
 }
 _STIFF = 1e9  # times the bending stiffness, so that what is drawn stays straight

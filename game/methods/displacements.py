@@ -54,15 +54,10 @@ class DisplacementTables(Tables):
         columns = [Column("L", "m", length), Column("N/δ", "kN/m", stretching)]
         if self.bends:
             first, mixed, second = rods.end_stiffness.T
-            for title, unit, values in (
-                ("M₁/φ₁", "kN·m", first),
-                ("M₁/φ₂ = M₂/φ₁", "kN·m", mixed),
-                ("M₂/φ₂", "kN·m", second),
-                ("V/φ₁", "kN", (first + mixed) / length),
-                ("V/φ₂", "kN", (mixed + second) / length),
-                ("V/δ", "kN/m", (first + 2.0 * mixed + second) / length**2),
-            ):
-                columns.append(Column(title, unit, values))
+            shown = [("M₁/φ₁", "kN·m", first), ("M₁/φ₂ = M₂/φ₁", "kN·m", mixed), ("M₂/φ₂", "kN·m", second)]
+            shown += [("V/φ₁", "kN", (first + mixed) / length), ("V/φ₂", "kN", (mixed + second) / length)]
+            shown.append(("V/δ", "kN/m", (first + 2.0 * mixed + second) / length**2))
+            columns += [Column(*column) for column in shown]
         return Table(tr("rod"), rods.names, columns)
 
     def member(self, row: int) -> Table:
@@ -118,29 +113,20 @@ class DisplacementTables(Tables):
         rows = np.flatnonzero((np.abs(shares) > written.ROUNDING * least).any(axis=0))
         every = [*self.model.rods.names, tr("joints") if of_load else tr("supports")]
         names, shares = [every[row] for row in rows.tolist()], shares[:, rows]
-        columns = [
-            Column(
-                f"F{index(i + 1)}" if of_load else f"k{index(i + 1, j + 1)}",
-                self.unit(i, None if of_load else j),
-                values,
-                summed=True,
-                least=least,
-            )
-            for i, values in zip(which, shares, strict=True)
-        ]
+        columns = []
+        for i, values in zip(which, shares, strict=True):
+            title = f"F{index(i + 1)}" if of_load else f"k{index(i + 1, j + 1)}"
+            unit = self.unit(i, None if of_load else j)
+            columns.append(Column(title, unit, values, summed=True, least=least))
         return Table(tr("rod"), names, columns)
 
     def system(self) -> Table:
         """K Δ = F: a row for every unknown, with what it is found to be."""
         solution = self.solution
         names = [f"Δ{index(i + 1)} {name}" for i, name in enumerate(self.names)]
-        columns = [
-            Column(f"Δ{index(j + 1)}", "", column, alike=False, digits=EXACT)
-            for j, column in enumerate(solution.stiffness.T)
-        ]
-        columns.append(
-            Column("F", "kN, kN·m" if self.bends else "kN", solution.load, alike=False, digits=EXACT)
-        )
+        shown = [(f"Δ{index(j + 1)}", "", column) for j, column in enumerate(solution.stiffness.T)]
+        shown.append(("F", "kN, kN·m" if self.bends else "kN", solution.load))
+        columns = [Column(*column, alike=False, digits=EXACT) for column in shown]
         found = Column("Δ", "m, rad" if self.bends else "m", solution.displacement, alike=False)
         return Table("K", names, [*columns, found])
 
@@ -242,10 +228,8 @@ class DisplacementGuide(Guide):
             copy = held(unloaded(model, []), solution)
             third = self._moved(copy, SetState.superposed(solution.units, alone), alone=True)
         else:
-            amounts = [*solution.amounts.tolist(), 0.0]
-            third = self._moved(
-                unloaded(model, []), SetState.superposed((*solution.units, solution.base), amounts)
-            )
+            state = SetState.superposed((*solution.units, solution.base), [*solution.amounts.tolist(), 0.0])
+            third = self._moved(unloaded(model, []), state)
         self.sets.append(third)
 
     def _moved(self, copy: Model, state: SetState, *, alone: bool = False) -> Set:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from pinjoint.components.bent import MOMENT, is_frame
+from pinjoint.components.bent import MOMENT, farthest, is_frame
 from pinjoint.components.field import LARGEST, SMALLEST, Column, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
@@ -71,7 +71,8 @@ class Set:
     def scale_to(self, state: SetState) -> None:
         """Choose drawing scales for the displacements and forces of a final state."""
         size = extent(self.model) if self.model.rods.count else 0.0
-        self.suited = scale_to(DRAWN_SHARE * size, largest(state.displacement))
+        between = farthest(self.model, np.flatnonzero(self.model.rods.bending_stiffness > 0.0))[0]
+        self.suited = scale_to(DRAWN_SHARE * size, max(largest(state.displacement), largest(between)))
         if not is_frame(self.model):
             self.model.settings.diagram_scale = scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
 

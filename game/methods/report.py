@@ -158,16 +158,11 @@ class _Page:
     def forces(self) -> list[Flowable]:
         """Superposition, and the forces in the real structure."""
         model, solved = self.model, self.solved
-        figures = [
-            figure(
-                self.layout,
-                still(base_structure(model, []), model, self.solution.superposed),
-                title,
-                diagrams=quantity,
-            )
-            for quantity, title in diagram_titles().items()
-            if (self._pulls if quantity == AXIAL else solved.bends)
-        ]
+        figures = []
+        for quantity, title in diagram_titles().items():
+            if self._pulls if quantity == AXIAL else solved.bends:
+                copy = still(base_structure(model, []), model, self.solution.superposed)
+                figures.append(figure(self.layout, copy, title, diagrams=quantity))
         heading = [self._text(tr("4  Forces in the structure"), "heading")]
         most = _SHOWN if solved.bends else PRODUCTS
         kinds = [solved.moments(most)] if solved.bends else []
@@ -184,13 +179,9 @@ class _Page:
         """Equilibrium of the whole, the equations, and the difference from linear theory."""
         solution = self.solution
         whole, real = solution.superposed, solution.real
-        balance = [
-            self._text(tr("Equilibrium of the whole structure (kN, kN·m):")),
-            *(
-                self._text(f"{name} = {written.total(terms)}", "equation")
-                for name, terms in _balance(self.model, whole)
-            ),
-        ]
+        balance = [self._text(tr("Equilibrium of the whole structure (kN, kN·m):"))]
+        for name, terms in _balance(self.model, whole):
+            balance.append(self._text(f"{name} = {written.total(terms)}", "equation"))
         gaps = self._closing()
         size = largest(real.axial_force)
         off = written.force(largest(whole.axial_force - real.axial_force), nothing=_same(size))
@@ -226,9 +217,8 @@ class _ForcePage(_Page):
         caption = marked("Released structure under the load: {force} ({unit})")
         blocks = self._under_load(released, caption, list(_cuts(self.model, released, unknowns)))
         blocks += map(self._under_unit, self._every)
-        return _flowing(
-            [self._text(tr("1  Structure and released structure"), "heading")], [*blocks, *self._said()], 0
-        )
+        heading = self._text(tr("1  Structure and released structure"), "heading")
+        return _flowing([heading], [*blocks, *self._said()], 0)
 
     def _under_unit(self, i: int) -> Block:
         model, unknowns, state = self.model, list(self.solution.unknowns), self.solution.units[i]
@@ -238,18 +228,9 @@ class _ForcePage(_Page):
         cuts = list(_cuts(model, copy, unknowns, i))
         if unknown.of_end and any(cut.label and cut.held for cut in cuts):  # the support bears no moment
             state = replace(state, reaction=state.reaction * [1.0, 1.0, 0.0])
-        return figure(
-            self.layout,
-            still(copy, model, state),
-            tr(
-                "Released structure under {unknown} = 1: {force}",
-                unknown=f"X{index(i + 1)}",
-                force=self._by_unit(i),
-            ),
-            diagrams=self._quantity,
-            cuts=cuts,
-            has_units=False,
-        )
+        told = {"unknown": f"X{index(i + 1)}", "force": self._by_unit(i)}
+        said, copy = tr("Released structure under {unknown} = 1: {force}", **told), still(copy, model, state)
+        return figure(self.layout, copy, said, diagrams=self._quantity, cuts=cuts, has_units=False)
 
     def _said(self) -> list[Block]:
         """The degree of static indeterminacy, and the unknowns."""
@@ -263,13 +244,9 @@ class _ForcePage(_Page):
         if 0 < len(unknowns) < count.degree:
             names = listed([unknown.name for unknown in unknowns])
             degree.append(self._text(tr("Released here: {names}; the others stay.", names=names)))
-        found = [
-            self._text(tr("Unknowns")),
-            *(
-                self._text(f"X{index(i + 1)}:  {words.meaning(unknown)}", "equation")
-                for i, unknown in enumerate(unknowns)
-            ),
-        ]
+        found = [self._text(tr("Unknowns"))]
+        for i, unknown in enumerate(unknowns):
+            found.append(self._text(f"X{index(i + 1)}:  {words.meaning(unknown)}", "equation"))
         full = (2 + len(unknowns)) % in_a_row(self.layout, self.model) == 0  # else beside the last figures
         return [(0.0, degree), (0.0, found)] if full else [(0.0, [*degree, *found])]
 
@@ -441,20 +418,10 @@ def _same(size: float) -> float:
 def _counted(solved: Tables) -> str:
     """What the letters of the formula count."""
     count = Count.of(solved.model)
+    said = marked("m = {rods} rods, r = {constraints} reactions, n = {nodes} joints, h = {hinges} hinges")
     if count.hinges is None:
-        return tr(
-            "m = {rods} rods, r = {constraints} reactions, n = {nodes} joints",
-            rods=count.rods,
-            constraints=count.constraints,
-            nodes=count.nodes,
-        )
-    return tr(
-        "m = {rods} rods, r = {constraints} reactions, n = {nodes} joints, h = {hinges} hinges",
-        rods=count.rods,
-        constraints=count.constraints,
-        nodes=count.nodes,
-        hinges=count.hinges,
-    )
+        said = marked("m = {rods} rods, r = {constraints} reactions, n = {nodes} joints")
+    return tr(said, **vars(count))
 
 
 def _formulas(solved: ForceTables, *, pulls: bool) -> Iterator[str]:

@@ -63,15 +63,12 @@ class Tables:
         """Likewise R = R₀ + Σ X r of all supports; those released have their unknown."""
         held = supported(self.model) & [True, True, self.bends]
         places = np.argwhere(held & nodes(self.model)[:, None])
-        unit = "kN, kN·m" if self.bends else "kN"
-        return self._superposed(
-            "R",
-            unit,
-            tr("support"),
-            self.directions(places.tolist()),
-            lambda state: in_support_axes(self.model, state.reaction)[tuple(places.T)],
-            most,
-        )
+        names, unit = self.directions(places.tolist()), "kN, kN·m" if self.bends else "kN"
+
+        def of(state: SetState) -> Array:
+            return in_support_axes(self.model, state.reaction)[tuple(places.T)]
+
+        return self._superposed("R", unit, tr("support"), names, of, most)
 
     def directions(self, places: Iterable[Sequence[int]]) -> list[str]:
         """Names of directions of particles, by row and axis."""
@@ -94,14 +91,9 @@ class Tables:
         terms = [(f"+ {self.letter}{index(i + 1)}{small}{index(i + 1)}", part) for i, part in enumerate(parts)]
         size = max(map(largest, (real, base, *parts)))
         off = np.where(np.abs(base + added - real) <= written.ROUNDING * size, 0.0, base + added - real)
-        shown = [
-            (symbol, unit, base + added),
-            (f"= {symbol}₀", "", base),
-            *(
-                (title, "", part)
-                for title, part in (terms if len(terms) <= most else [(f"+ Σ{self.letter}{small}", added)])
-            ),
-        ]
+        terms = terms if len(terms) <= most else [(f"+ Σ{self.letter}{small}", added)]
+        shown = [(symbol, unit, base + added), (f"= {symbol}₀", "", base)]
+        shown += [(title, "", part) for title, part in terms]
         columns = [Column(*column, digits=_FINER, size=size) for column in shown]
         return Table(corner, names, [*columns, Column(tr("difference"), "", off, digits=1)])
 
@@ -182,12 +174,8 @@ class ForceTables(Tables):
 
         of = which if last is None else [last]
         for i in of:
-            add(
-                f"{large}{small}{index(i + 1)}{per}",
-                self.gap_unit(i),
-                terms.of_load[i],
-                largest(other.of_load[i]),
-            )
+            least = largest(other.of_load[i])
+            add(f"{large}{small}{index(i + 1)}{per}", self.gap_unit(i), terms.of_load[i], least)
         for i in of if terms.of_free.any() else ():
             add(f"{small}{index(i + 1)}{free}", self.gap_unit(i), terms.of_free[i])
         for i, j in ((i, j) for i in which for j in of if i <= j):

@@ -156,23 +156,15 @@ def _let_parts_bear(model: Model, load: SpanLoad, parts: Sequence[Rod], cuts: Nu
         values = first + (np.array([[begins], [ends]]) - start) / (end - start or 1.0) * (last - first)
         spread = begins < ends and bool(values.any())
         if here or spread:
-            facts = {
-                "rod": part.row,
-                "start": begins - low,
-                "end": ends - low if spread and ends < high else None,
-            }
+            facts = {"rod": part.row, "start": begins - low}
+            facts |= {"end": ends - low if spread and ends < high else None}
             facts |= {"force": load.force, "moment": load.moment} if here else {}
             facts |= {"start_intensity": values[0], "end_intensity": values[1]} if spread else {}
             made.append(facts | {"direction": load.direction, **of_all})
         elif load.temperature_change or load.temperature_gradient:
             made.append({"rod": part.row, **of_all})
-    none = {
-        "start": 0.0,
-        "force": (0.0, 0.0),
-        "moment": 0.0,
-        "start_intensity": (0.0, 0.0),
-        "end_intensity": (0.0, 0.0),
-    }
+    none: dict[str, Any] = {"start": 0.0, "moment": 0.0}
+    none |= dict.fromkeys(("force", "start_intensity", "end_intensity"), (0.0, 0.0))
     for name, value in [("end", None), *(none | made[0]).items()]:
         model.assign([load], name, [value])
     for facts in made[1:]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pinjoint.components import written
-from pinjoint.components.language import plural, tr
+from pinjoint.components.language import marked, plural, tr
 from pinjoint.systems.program.entries import SMALLEST_ENERGY
 
 TOLD_OVERLAP = 2e-3  # of a radius; smaller: tells of piles of like discs, too, whose steps leave up to 1.3e-3
@@ -15,27 +15,21 @@ def energy_warning(imbalance: float, scale: float) -> str:
     if not abs(imbalance) > TOLD_SHARE * scale + SMALLEST_ENERGY:
         return ""
     share = abs(imbalance) / max(scale, SMALLEST_ENERGY)
-    if share >= 10.0:
-        times = written.number(share, 3)
-        if imbalance > 0.0:
-            return tr(
-                "The time steps lost {times} times the supplied energy: the errors of the results may be as large.",
-                times=times,
-            )
-        return tr(
-            "The time steps created {times} times the supplied energy: the errors of the results may be as large.",
-            times=times,
-        )
-    part = written.share(share)
-    if imbalance > 0.0:
-        return tr(
-            "The time steps lost {share} of the supplied energy: the errors of the results may be as large.",
-            share=part,
-        )
-    return tr(
-        "The time steps created {share} of the supplied energy: the errors of the results may be as large.",
-        share=part,
+    lost = marked(
+        "The time steps lost {share} of the supplied energy: the errors of the results may be as large."
     )
+    made = marked(
+        "The time steps created {share} of the supplied energy: the errors of the results may be as large."
+    )
+    if share >= 10.0:
+        lost = marked(
+            "The time steps lost {times} times the supplied energy: the errors of the results may be as large."
+        )
+        made = marked(
+            "The time steps created {times} times the supplied energy: the errors of the results may be as large."
+        )
+    said = lost if imbalance > 0.0 else made
+    return tr(said, share=written.share(share), times=written.number(share, 3))
 
 
 def overlap_warning(deepest: float) -> str:

@@ -22,10 +22,11 @@ from pinjoint.components.field import FieldError
 from pinjoint.components.language import listed, tr
 from pinjoint.components.load import SpanLoad
 from pinjoint.components.model import Model
+from pinjoint.components.rod import Rod
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.spans import Curves, Kinks, extremes
 from pinjoint.components.theory import FIRST_ORDER
-from pinjoint.components.wording import missing
+from pinjoint.components.wording import as_said, missing
 from pinjoint.components.world import Shown
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest, of_rods
 from pinjoint.systems.statics.events import NoEquilibrium
@@ -283,7 +284,9 @@ class Envelope:
         copy.settings.combinations = {case: {case: 1.0} for case in cases}
         found = cls.of(copy, (), FIRST_ORDER, (1.0,), np.zeros((model.rods.count, 3)))
         told = [
-            f"{rod}, {written.length(x)}" for rod, size in zip(path, length, strict=True) for x in size * shares
+            f"{as_said(Rod.noun, rod)}, {written.length(x)}"
+            for rod, size in zip(path, length, strict=True)
+            for x in size * shares
         ]
         stands = tuple(told[int(case)] for case in found.combinations)
         return replace(found, combinations=stands, path=tuple(path))
@@ -292,7 +295,10 @@ class Envelope:
     def said(self) -> str:
         """Of what it is."""
         if self.path:
-            return tr("envelope of 1 kN downwards that moves along {rods}", rods=listed(self.path))
+            return tr(
+                "envelope of 1 kN downwards that moves along {rods}",
+                rods=listed([as_said(Rod.noun, name) for name in self.path]),
+            )
         return tr("envelope of {names}", names=listed(self.combinations))
 
     def extremes(self, quantity: str, row: int) -> tuple[Extreme, Extreme]:

@@ -87,16 +87,15 @@ class LooseBody:
     def event(self, model: Model, factor: float) -> Event:
         """What happens to it at a load factor."""
         names = model.particles.names
-        who, along = listed([names[row] for row in self.particles]), "xy"[self.axis]
+        told = {"names": listed([names[row] for row in self.particles]), "axis": "xy"[self.axis]}
         if self.pull:
             message = plural(
                 "Free body: nothing holds {names} along {axis}, where {force} pull it. Hold it by a support along {axis}.",
                 "Free body: nothing holds {names} along {axis}, where {force} pull them. Hold one of them by a support along"
                 " {axis}.",
                 len(self.particles),
-                names=who,
-                axis=along,
                 force=written.force(self.pull),
+                **told,
             )
         else:
             message = plural(
@@ -105,8 +104,7 @@ class LooseBody:
                 "Free body: nothing holds {names} along {axis}, but the forces on them in that direction add up to zero."
                 " Hold one of them by a support along {axis}.",
                 len(self.particles),
-                names=who,
-                axis=along,
+                **told,
             )
         motion = np.zeros((model.particles.count, 2))
         motion[self.particles, self.axis] = np.sign(self.pull) or 1.0

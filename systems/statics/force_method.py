@@ -285,32 +285,14 @@ def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequ
     settled = np.argwhere((moved != 0.0) | (springs > 0.0))
     reactions = np.array([in_support_axes(model, unit.reaction) for unit in units])
     reactions = reactions.reshape(count, len(moved), 3)[:, *settled.T]
-    at = tuple(settled.T)
-    return Work(
-        Terms(
-            n,
-            softness,
-            np.ones((rods.count, 1, 1)),
-            n[:, :, 0] * base.axial_force * softness,
-            n[:, :, 0] * _free(model),
-        ),
-        Terms(
-            m,
-            turning,
-            linear,
-            turning * (straight + (bulge(model) * m).sum(axis=2)),
-            length * curvature * m.mean(axis=2),
-        ),
-        Terms(
-            reactions[..., None],
-            soft[at],
-            np.ones((len(settled), 1, 1)),
-            -reactions * moved[at],
-            0.0 * reactions,
-        ),
-        settled,
-        moved[at],
-    )
+    at, pull = tuple(settled.T), n[:, :, 0]
+    alone = np.ones((rods.count, 1, 1))
+    axial = Terms(n, softness, alone, pull * base.axial_force * softness, pull * _free(model))
+    of_load = turning * (straight + (bulge(model) * m).sum(axis=2))
+    bending = Terms(m, turning, linear, of_load, length * curvature * m.mean(axis=2))
+    alone = np.ones((len(settled), 1, 1))
+    supports = Terms(reactions[..., None], soft[at], alone, -reactions * moved[at], 0.0 * reactions)
+    return Work(axial, bending, supports, settled, moved[at])
 
 
 def _free(model: Model) -> Array:

@@ -313,23 +313,21 @@ class Loading:
 
     def _collapse(self, flowing: Flags, motion: Array) -> NoEquilibrium:
         rows, hinges = np.flatnonzero(of_axes(flowing)), hinges_named(self.model, flowing)
+        told = {"at": self._at(self.point.t), "motion": describe_motion(self.model, motion[None])}
+        told |= {"rods": rod_names(self.model, rows), "hinges": hinges}
         message = plural(
             "Plastic collapse {at}: {rods} yields and nothing else resists moving {motion}. Lower the load or strengthen"
             " this rod.",
             "Plastic collapse {at}: {rods} yield and nothing else resists moving {motion}. Lower the load or strengthen"
             " these rods.",
             len(rows),
-            at=self._at(self.point.t),
-            rods=rod_names(self.model, rows),
-            motion=describe_motion(self.model, motion[None]),
+            **told,
         )
         if hinges:
             message = tr(
                 "Plastic collapse {at}: with plastic hinges {hinges} nothing resists moving {motion} any more. Lower the"
                 " load or strengthen the members there.",
-                at=self._at(self.point.t),
-                hinges=hinges,
-                motion=describe_motion(self.model, motion[None]),
+                **told,
             )
         if (of_axes(flowing) & self.slack).any():
             message = plural(
@@ -338,18 +336,15 @@ class Loading:
                 "Collapse {at}: nothing resists moving {motion} while {rods} yield or have buckled. Lower the load or"
                 " stiffen these rods.",
                 len(rows),
-                at=self._at(self.point.t),
-                rods=rod_names(self.model, rows),
-                motion=describe_motion(self.model, motion[None]),
+                **told,
             )
         earlier = next((event for event in self.events if event.kind == "plastic mechanism"), None)
         if earlier is not None:
             message = tr(
                 "The changed shape gives way, too, {at}: nothing resists moving {motion} any more. The collapse load of"
                 " textbooks, of the plastic mechanism in the original shape, is at the load factor {factor}.",
-                at=self._at(self.point.t),
-                motion=describe_motion(self.model, motion[None]),
                 factor=written.number(earlier.load_factor),
+                **told,
             )
         self._tell("collapse", self.point.t, message, flowing, motion)
         return NoEquilibrium("collapse", message)

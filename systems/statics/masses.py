@@ -20,6 +20,14 @@ from pinjoint.systems.statics.equations import Array, Flags, Response, Rows, Str
 from pinjoint.systems.statics.state import Start, StaticState
 
 PARTS = 4  # of a member, at least
+_OF_PARTS = (
+    "stiffness",
+    "tension_limit",
+    "compression_limit",
+    "sense",
+    "buckling_load",
+    "flat",
+)  # as of their rods
 CLOSE = 0.75 * np.pi  # of a wave, in radians along a part, up to which frequencies are within some 2 %
 
 
@@ -58,7 +66,9 @@ class Divided:
         inner = row[~first], (number / parts[row])[~first]
         length = (rods.rest_length / parts)[row]
         inside, outer = (rods.bending_stiffness > 0.0)[row, None], np.stack([first, last], axis=1)
-        per_slope, of_ends = by_fixity(np.where(outer, _of_parts(rods.fixity[row], parts[row]), inside))
+        fixity = rods.fixity[row]
+        sprung = fixity / (fixity + (1.0 - fixity) * parts[row, None])  # of the same springs: k/(k + 3 EI n/L₀)
+        per_slope, of_ends = by_fixity(np.where(outer, sprung, inside))
         between = Kinks.of(model).divided(row, number / parts[row], (number + 1) / parts[row])
         bending = Bending(
             rest_length=length,
@@ -71,17 +81,7 @@ class Divided:
         between = particles.position[whole.ends[inner[0], 0]] + inner[1][:, None] * rods.difference[inner[0]]
         structure = replace(
             whole,
-            **{
-                name: getattr(whole, name)[row]
-                for name in (
-                    "stiffness",
-                    "tension_limit",
-                    "compression_limit",
-                    "sense",
-                    "buckling_load",
-                    "flat",
-                )
-            },
+            **{name: getattr(whole, name)[row] for name in _OF_PARTS},
             position=np.concatenate([whole.position, between]),
             ends=ends,
             difference=whole.difference[row] / parts[row, None],
@@ -168,11 +168,6 @@ def _bending(model: Model) -> Structure:
         springs = np.pad(found.springs, ((0, 0), (0, 1)))
         found = replace(found, bending=Bending.of(model, bows=True), fixed=fixed, springs=springs)
     return found.with_translations()
-
-
-def _of_parts(fixity: Array, parts: Rows) -> Array:
-    """Fixities of the same springs at parts of rods, so many of each, (n, 2): k/(k + 3 EI n/L₀)."""
-    return fixity / (fixity + (1.0 - fixity) * parts[:, None])
 
 
 def _points(model: Model, heavy: Flags) -> Array:

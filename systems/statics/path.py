@@ -178,33 +178,21 @@ class _Critical:
     def event(self, model: Model, sign: float, number: int) -> Event:
         """It in words; sign: of the load factor along the path, number: that of the bifurcation."""
         factor, motion = sign * self.point.t, self.motion
-        if self.kind == LIMIT_POINT:
-            if self.tangent.sense < 0.0:
-                message = tr(
-                    "Limit point at the load factor {factor:.6g}: from here on the load grows again.",
-                    factor=factor,
-                )
-            else:
-                message = tr(
-                    "Limit point at the load factor {factor:.6g}: the structure bears no more load here, and from here on"
-                    " the load falls; under a constant load the structure would jump.",
-                    factor=factor,
-                )
-        elif self.kind == COLLAPSE:
-            message = tr(
-                "Collapse at the load factor {factor:.6g}: nothing resists moving {motion} any more.",
-                factor=factor,
-                motion=describe_motion(model, motion[None]),
+        said = marked(
+            "Bifurcation at the load factor {factor:.6g}: another equilibrium path branches off here, along which"
+            " {motion} can move; to follow it to one side or the other, give --branch {number} or --branch -{number}."
+        )
+        if self.kind == COLLAPSE:
+            said = marked("Collapse at the load factor {factor:.6g}: nothing resists moving {motion} any more.")
+        elif self.kind == LIMIT_POINT and self.tangent.sense < 0.0:
+            said = marked("Limit point at the load factor {factor:.6g}: from here on the load grows again.")
+        elif self.kind == LIMIT_POINT:
+            said = marked(
+                "Limit point at the load factor {factor:.6g}: the structure bears no more load here, and from here on"
+                " the load falls; under a constant load the structure would jump."
             )
-        else:
-            message = tr(
-                "Bifurcation at the load factor {factor:.6g}: another equilibrium path branches off here, along which"
-                " {motion} can move; to follow it to one side or the other, give --branch {number} or --branch -{number}.",
-                factor=factor,
-                motion=describe_motion(model, motion[None]),
-                number=number,
-            )
-        return Event(self.kind, factor, message, motion=motion)
+        moving = describe_motion(model, motion[None])
+        return Event(self.kind, factor, tr(said, factor=factor, motion=moving, number=number), motion=motion)
 
     def branch(self, side: float, first: float) -> Step | None:
         """The first step on the other branch of a bifurcation, along its mode or against it (side 1, −1), if it is found.

@@ -134,19 +134,22 @@ def settle(
     if problem:
         raise FieldError(problem)
     start = start or Start.of(model)
-    found = _Settling(model, theory, start).through(wanted)
+    settling = _Settling(model, theory, start)
+    found = settling.through(wanted)
     if theory == EXACT and model.settings.collisions:
         discs = Discs.of(model, start.displacement)
-        if len(discs.radius) > 1 and _touch(model, discs, wanted, found, start):
+        if len(discs.radius) > 1 and _touch(settling, discs, wanted, found, start):
             return _SettlingWithDiscs(model, discs, start).through(wanted)
     return found
 
 
-def _touch(model: Model, discs: Discs, factors: Sequence[float], found: Settlement, start: Start) -> bool:
+def _touch(
+    settling: _Settling, discs: Discs, factors: Sequence[float], found: Settlement, start: Start
+) -> bool:
     """True if a body without supports is pulled that others may hold, if discs overlap that did not at the beginning, or if
     they move so far that they may pass an obstacle."""
-    structure, external = Structure.of(model), External.of(model)
-    loose = [body for factor in factors for body in loose_bodies(structure, external.at(factor))]
+    loads = map(settling.external.at, factors)
+    loose = [body for load in loads for body in loose_bodies(settling.structure, load)]
     if any(body.pull and len(body.particles) < len(discs.radius) for body in loose):
         return True
     places = [state.displacement for state in found.states]

@@ -5,10 +5,12 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
+from pinjoint.components.bent import farthest
 from pinjoint.components.language import spoken
 from pinjoint.components.rod import Rod
 from pinjoint.components.tags import Selected
@@ -16,6 +18,7 @@ from pinjoint.documents import models
 from pinjoint.methods import displacement_words as words
 from pinjoint.methods.displacements import DisplacementGuide, DisplacementTables
 from pinjoint.methods.report import contents, report
+from pinjoint.systems.edit.arrows import extent
 from pinjoint.systems.render.backends.paper import LAYOUTS, WIDTH
 from pinjoint.systems.render.picture import compose_all
 from pinjoint.systems.render.theme import load_theme
@@ -258,3 +261,13 @@ def test_diagrams_of_displaced_sets_are_those_of_first_order() -> None:
         "12000",
         "24000",
     }
+
+
+def test_members_that_bow_more_than_joints_move_are_drawn_no_larger_than_others() -> None:
+    """A portal whose joints hardly move under a load along its beam, which bows."""
+    source = models.document(Session.open("portal").model)
+    source["loads"], source["sliders"] = [], []
+    _, guide = led(source)
+    shown = guide.sets[0].model
+    most = farthest(shown, np.arange(shown.rods.count))[0].max() * shown.settings.displacement_scale
+    assert 0.0 < most < 0.2 * extent(shown)

@@ -1,5 +1,6 @@
 """Habits: what a hand does in every program, here by the events of a real keyboard and mouse, in an unseen window."""
 
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,10 +12,12 @@ from pinjoint.components.field import Vector
 from pinjoint.documents import models
 from pinjoint.documents.autosave import Autosave
 from pinjoint.documents.open_documents import ModelFile
+from pinjoint.documents.preferences import preferred_place
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.lessons.judging import named
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
+from tests.game.test_autosave import values_until, window
 from tests.reference.hits import hits_in
 
 pytestmark = pytest.mark.usefixtures("data", "config")
@@ -271,6 +274,19 @@ def test_new_rods_snap_to_the_grid_and_to_joints(hand: Hand) -> None:
     assert hand.session.rods.between[-1].tolist() == [0, 3]
 
 
+def test_a_marker_shows_where_a_click_would_snap(hand: Hand) -> None:
+    tools = hand.app.session.view.toolbar.groups
+    hand.session.view.tool = next(tool.action for group in tools for tool in group if tool.action == "place")
+    hand.move(C[0] + 0.507, C[1] + 0.004)
+    hand.session.update_view()
+    marker = hand.session.view.preview
+    assert marker is not None
+    assert marker.start == pytest.approx((2.5, 0.0))
+    hand.down()
+    hand.up()
+    assert hand.session.particles.position[-1].tolist() == pytest.approx([2.5, 0.0])
+
+
 def test_a_file_that_is_dropped_opens(hand: Hand, tmp_path: Path) -> None:
     path = tmp_path / "dropped.json"
     models.save(models.load("hyperstatic"), path)
@@ -316,3 +332,55 @@ def test_full_screen_and_back(hand: Hand) -> None:
     hand.key(pygame.K_F11)
     hand.key(pygame.K_F11)
     assert hand.app.size == size
+
+
+def closed(app: App) -> None:
+    """Close a window as its button does."""
+    pygame.event.post(pygame.event.Event(pygame.QUIT))
+    app.run()
+
+
+def test_a_window_opens_where_and_as_large_as_it_was(
+    data: Path, config: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pinjoint.app.UNSEEN", ())
+    app = App(models.load("isostatic"))
+    app.window.size, app.window.position = (900, 600), (40, 30)
+    closed(app)
+    place = preferred_place()
+    assert place is not None
+    assert place[2:] == (900, 600)
+    app = App(models.load("isostatic"), place=place)
+    assert app.window.size == (900, 600)
+    app.close()
+
+
+def offered(data: Path) -> Hand:
+    """A new window, in which the first of the models to open is opened."""
+    hand = Hand(App(models.load("isostatic"), ModelFile(None, "isostatic"), Autosave(interval=0.0)))
+    hand.key(pygame.K_o, CTRL)
+    assert any(text.startswith("not saved") for text in hand.texts)
+    hand.key(pygame.K_DOWN)
+    hand.key(pygame.K_RETURN)
+    return hand
+
+
+def test_work_that_nobody_saved_is_offered_after_its_window_was_closed(hand: Hand, data: Path) -> None:
+    hand.drag(B, (1.0, 1.5))
+    closed(hand.app)
+    again = offered(data)
+    assert again.session.particles["B"].position == (1.0, 1.5)
+    assert again.session.document.unsaved
+    again.app.close()
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
+def test_work_is_recovered_after_a_kill(data: Path, tmp_path: Path) -> None:
+    models.save(models.load("isostatic"), tmp_path / "work.json")
+    with window(tmp_path / "work.json") as process:
+        values_until(process, 1.5)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    hand = offered(data)
+    assert hand.session.rods[0].stiffness > 1000.0
+    hand.app.close()

@@ -9,6 +9,7 @@ import pytest
 from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.components.bent import Station
+from pinjoint.components.language import spoken
 from pinjoint.components.load import SpanLoad
 from pinjoint.documents.influence import Influence
 from pinjoint.sheet import Solved, contents
@@ -66,6 +67,23 @@ def test_several_rods_are_a_path_in_the_window_and_one_after_its_lines() -> None
     session.model.delete([session.rods["AB"]])
     session.frame(0.0)
     assert not session.view.envelope
+
+
+def test_in_portuguese_rods_are_barras() -> None:
+    source = three_spans()
+    for number, one in enumerate(source["rods"]):  # type: ignore[arg-type, var-annotated]
+        one["name"] = f"rod {number + 1}"
+    with spoken("pt"):
+        session = in_statics(source)
+        session.select(session.rods["rod 1"], session.rods["rod 2"])
+        session.press("ctrl+i")
+        assert "envolvente de 1 kN para baixo que se desloca ao longo de barra 1 e barra 2" in texts(session)
+        assert "0,8196 kN·m (barra 1, 170 cm)" in texts(session)
+        session.press("ctrl+i")
+        session.select(session.rods["rod 2"])
+        session.press("ctrl+i")
+        assert session.view.shape is not None
+        assert "rod" not in session.view.shape.title
 
 
 def test_outside_statics_it_is_told_where_it_is_shown() -> None:

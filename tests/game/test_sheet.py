@@ -141,8 +141,33 @@ def test_what_a_run_left_behind_is_not_in_it() -> None:
 def test_there_is_none_of_what_cannot_be_solved(theory: str) -> None:
     with pytest.raises(NoSheet, match="no rods"):
         sheet(models.load("newtons_cradle"), theory)
+    model = models.load("isostatic")
+    model.particles["C"].fixed = (False, True)
     with pytest.raises(NoSheet, match="There is no sheet without an equilibrium"):
-        sheet(models.load("isostatic_collapse"), theory)
+        sheet(model, theory)
+
+
+def test_the_mode_that_is_shown_is_in_it_and_a_collapse_once() -> None:
+    buckled = Session.open("eulers_columns")
+    buckled.press("b")
+    assert buckled.view.shape is not None
+    bare, more = (
+        len(contents(Solved(buckled.model, FIRST_ORDER), LAYOUTS[0], s)) for s in ((), [buckled.view.shape])
+    )
+    assert more > bare
+    solved = Solved(models.load("portal_collapse"), FIRST_ORDER)
+    assert len(contents(solved, LAYOUTS[0])) == len(contents(solved, LAYOUTS[0], solved.collapse))
+
+
+def test_what_collapses_is_shown_as_it_stands_just_before() -> None:
+    model = models.load("portal_collapse")
+    model.settings.load_steps = [0.5, 1.6]
+    solved = Solved(model, FIRST_ORDER)
+    assert "Plastic collapse at the load factor 1.500" in solved.said
+    largest = max(map(abs, column(solved.results.rods, "bending_moment_end")))
+    assert largest == pytest.approx(70.0, rel=1e-5)
+    assert column(solved.results.rods, "bending_moment_start")[0] == pytest.approx(-70.0, rel=1e-4)
+    assert len(solved.collapse) == 1
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

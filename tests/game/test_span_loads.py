@@ -48,6 +48,17 @@ def test_a_second_click_on_the_rod_distributes_it_up_to_there() -> None:
     assert any("kN/m" in text for text in texts(session))
 
 
+def test_typed_per_length_it_acts_all_along_the_rod() -> None:
+    session = portal()
+    session.press("ctrl+f", session.point(1.0, 3.0))
+    session.type("-20 kN/m")
+    session.press("return")
+    [load] = session.span_loads
+    assert (load.start, load.end) == (0.0, 4.0)
+    assert load.start_intensity == load.end_intensity == (0.0, -20.0)
+    assert "(0, −20) kN/m" in session.notice
+
+
 def test_a_moment_is_drawn_at_a_place_of_a_rod_and_removed_in_its_menu() -> None:
     session = portal()
     choose(session, "moment")

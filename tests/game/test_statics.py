@@ -418,6 +418,19 @@ def test_what_has_no_equilibrium_moves_as_it_does_then() -> None:
     assert session.view.shape is None
 
 
+def test_a_collapse_moves_straight_members_between_plastic_hinges() -> None:
+    """Of the portal, sway by δ takes the middle of its beam down by 3/4 δ; members that bend would bulge beside that."""
+    session = in_statics("portal_collapse")
+    session.settings.load_steps = (1.6,)
+    session.update_view()
+    shape = session.view.shape
+    assert shape is not None
+    assert shape.parts is not None
+    assert not shape.parts.fixity.any()
+    x, y = shape.displacement[session.model.particles["C"].row]
+    assert y == pytest.approx(-0.75 * x, rel=1e-6)
+
+
 def test_modes_are_of_the_unloaded_structure_in_first_order_and_about_the_equilibrium_else() -> None:
     session = in_statics("portal")
     titles = []

@@ -11,6 +11,7 @@ from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.components.camera import Rectangle
 from pinjoint.components.view import Plot
+from pinjoint.documents import statics
 from pinjoint.included.probes import ENERGIES, probes_of, record
 from pinjoint.paths import quantity
 from pinjoint.systems.edit.pull import Hand
@@ -215,3 +216,27 @@ def test_members_offer_their_moments_and_joints_their_rotation() -> None:
     for _ in range(5):
         session.press("o")
     assert "rotation of particle B" in session.notice
+
+
+def test_in_a_window_a_plot_against_the_load_factor_comes_frames_later(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each frame has its part of solving the states on the way; the samples are those of who waits."""
+    tables = []
+    for window in (None, object()):
+        session = Session.open("portal")
+        session.press("q")
+        session.select(session.rods["AB"])
+        for limit in ("PART", "_MOST") if window else ():
+            monkeypatch.setattr(statics, limit, 0.0)  # so that it rests whenever it may
+        session.window = window
+        session.frame(0.0)
+        session.press("o")
+        probe, frames = probes_of(session).all[0], 0
+        session.particles["B"].force = (35.0, -20.0)
+        session.frame(0.0)
+        while session.document.statics.is_late or probe.solved != session.document.statics.revision:
+            session.frame(0.0)
+            frames += 1
+        assert (frames > 20) == (window is not None)
+        tables.append(probe.table)
+    assert (tables[0] == tables[1]).all()
+    assert len(tables[0]) > 20

@@ -30,7 +30,8 @@ class Arcade(Scene):
 class Score(System):
     name, phase = "fig.score", Phase.EVENTS
     {system}
-    def process(self, frame): pass
+    def process(self, frame): self.read()
+    def read(self): "Not its `reads`."
 
 def plugin(app):
     app.scene(Arcade)
@@ -115,6 +116,7 @@ def test_a_kernel_that_no_model_of_the_check_needs_is_told_as_a_note(write_mod: 
     [
         (KERNEL.format(law='scenes = ("simulatoin",)'), "fig.pull, scenes: There is no 'simulatoin' among the scenes"),
         (KERNEL.format(law="def need(self, model): return True"), "Pull.need means nothing; did you mean 'needs'?"),
+        (KERNEL.replace("kernel, reads", "kernle, reads").format(law=""), "Pull.kernle means nothing; did you mean 'ke"),
         (KERNEL.format(law="scnees = ()"), "Pull.scnees means nothing; did you mean 'scenes'?"),
         (KERNEL.replace("    return 0.0", "    print(1)\n    return 0.0").format(law=""), "The kernel of fig.pull prints"),
         (SCENE.format(scene='sources = ("nowhere",)', system=""), "arcade, sources: There is no 'nowhere'"),

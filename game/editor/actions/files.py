@@ -50,15 +50,19 @@ def _new(context: Context, pixel: Vector) -> None:
 @action("sheet", "", "save a sheet as PDF")
 def _sheet(context: Context, pixel: Vector) -> None:
     """Write the static solution of the model, from its undeformed beginning, to a PDF in the working folder; with the
-    influence line that is shown."""
+    mode or influence line that is shown."""
     if context.window is None:
         return
     from pinjoint.sheet import sheet  # it imports reportlab
 
     shape, theory = context.document.shapes.shown, context.model.settings.theory
-    lines = [shape] if shape is not None and not shape.swings else []
     with saving():
         enveloped = context.view.enveloped
-        made = sheet(context.model, theory, lines, None if enveloped is None else enveloped.path)
+        made = sheet(
+            context.model,
+            theory,
+            [] if shape is None else [shape],
+            None if enveloped is None else enveloped.path,
+        )
         path = context.window.save("pinjoint-sheet.pdf", made)
     context.notice = tr("Sheet saved: {file}", file=path)

@@ -277,7 +277,8 @@ class DrawArrow(Drawing):
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value, elements = self.value(context, pixel), [one for one in self.elements if one.exists]
-        if not self.typed and value in (0.0, (0.0, 0.0)):
+        away = math.dist(context.view.camera.to_pixels(self.start(context)), pixel) / context.view.pixel_ratio
+        if not self.typed and value in (0.0, (0.0, 0.0)) and away <= PARTICLE_REACH:
             raise Refusal("This arrow has no length: draw it farther, or type its value, 0 for none.")
         if elements:
             draw_load(context.model, elements, self.field, value)
@@ -329,7 +330,8 @@ class DrawDistributedForce(DrawArrow):
 
 
 class DrawSpanLoad(DrawArrow):
-    """A force at a place of a rod; after a second click on the rod, one that is distributed up to there."""
+    """A force at a place of a rod; after a second click on the rod, one that is distributed up to there; along all of it,
+    where kN/m are typed."""
 
     tool, field = "span load", "force"
     asks = marked("load on {rods}: click where its arrow ends, or on the rod where a distributed load ends")
@@ -357,6 +359,9 @@ class DrawSpanLoad(DrawArrow):
 
     def finish(self, context: Context, pixel: Vector) -> None:
         place, on_rod = along(context, self.elements[0], pixel), pick_rod(context.model, context.view, pixel)
+        if "/" in self.typed and self.typed.endswith("m") and len(self.places) == 1:  # kN/m
+            self.places = [0.0, float(self.elements[0].original_length)]
+            self.field = SpanLoad.end_intensity.name  # type: ignore[misc]
         if self.typed or len(self.places) > 1 or on_rod is not self.elements[0] or place in self.places:
             super().finish(context, pixel)
             return
@@ -465,11 +470,11 @@ class DrawElement(Drawing):
     def __init__(self, context: Context, origin: Particle | Vector) -> None:
         super().__init__(context, origin)
         self.placed: list[Vector] = []
-        self.hint = tr(
-            "{element}: click where it ends (or {key})     Esc cancel",
-            element=tr(self.kind.noun),
-            key=self.key.upper(),
-        )
+        named = {"element": tr(self.kind.noun), "key": self.key.upper()}
+        if self.kind.points[2:]:
+            self.hint = tr("{element}: click its further points (or {key})     Esc cancel", **named)
+        else:
+            self.hint = tr("{element}: click where it ends (or {key})     Esc cancel", **named)
 
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:

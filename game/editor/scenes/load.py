@@ -148,16 +148,10 @@ class Load(FileScene):
 def _yours(context: Context) -> list[Tile]:
     """Unsaved work that windows left behind, and saved models, the newest first."""
     files = context.autosave.left() if context.autosave is not None else []
-    offers = [
-        Tile(
-            tr(YOURS),
-            recovered_name(path) or tr("Untitled"),
-            joined([tr("not saved"), library.written_age(path)], ", "),
-            "",
-            path,
-        )
-        for path in files
-    ]
+    offers = []
+    for path in files:
+        title, age = recovered_name(path) or tr("Untitled"), library.written_age(path)
+        offers.append(Tile(tr(YOURS), title, joined([tr("not saved"), age], ", "), "", path))
     if offers:
         offers.append(Tile(tr(YOURS), tr("Discard"), tr("unsaved work"), "", DISCARD, symbol="×"))
     offers += saved_models(tr(YOURS))
@@ -195,18 +189,12 @@ def _examples() -> list[Tile]:
     told = {name: models.header_of(name) for name in models.bundled()}
     names = sorted(told, key=lambda name: told[name].title)
     names.sort(key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
+    subject = {name: (BENDING if of.bends else TRUSSES) if of.rods else COLLISIONS for name, of in told.items()}
     offers = []
     for section in EXAMPLES:
-        some = [name for name in names if _subject(told[name]) == section]
+        some = [name for name in names if subject[name] == section]
         offers += [Tile(tr(section), tr(told[n].title or n), n, n, n, tr(told[n].description)) for n in some]
         offers.append(
             Tile(tr(section), tr("All {count}", count=len(some)), tr(section), "", ALL, symbol="»", rest=True)
         )
     return offers
-
-
-def _subject(header: models.ModelHeader) -> str:
-    """The section in which a bundled model is offered."""
-    if not header.rods:
-        return COLLISIONS
-    return BENDING if header.bends else TRUSSES

@@ -82,15 +82,10 @@ def _widths(listing: Listing, width: float, u: float) -> tuple[float, float, lis
 def _bar(listing: Listing, view: View, theme: Theme) -> Part:
     """The titles of all tables, what can be done with the one that is shown, and the button that closes it."""
     looks = partial(button, theme=theme, inset=0.0)
-    tabs = [
-        looks(
-            _padded(title, 12.0, theme.text, "semibold"),
-            PRESSED,
-            pressed=title == listing.title,
-            item=("title", n),
-        )
-        for n, title in enumerate(listing.titles)
-    ]
+    tabs = []
+    for n, title in enumerate(listing.titles):
+        text, shown = _padded(title, 12.0, theme.text, "semibold"), title == listing.title
+        tabs.append(looks(text, PRESSED, pressed=shown, item=("title", n)))
     said = Text(view.provisional, 11.0, theme.halted, "semibold", grow=1.0)
     saves = [
         looks(_padded(title, 11.0, theme.muted), action)

@@ -149,16 +149,11 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
         return [], top
     room = v.width - 2 * EDGE * u
     behind = faded(theme.background, 0.85)  # keeps lines of a grid out of the text
-    lines = [
-        Row(
-            (
-                Plate(Row((Text(line, 13.0, colour, weight),), around=(4.0, 0.0, 0.0)), behind, radius=3.0),
-                Gap(grow=1.0),
-            )
-        )
-        for said, weight, colour in looks
-        for line in wrapped(said, room, sheet.font(13.0), weight)
-    ]
+    lines = []
+    for said, weight, colour in looks:
+        for line in wrapped(said, room, sheet.font(13.0), weight):
+            text = Row((Text(line, 13.0, colour, weight),), around=(4.0, 0.0, 0.0))
+            lines.append(Row((Plate(text, behind, radius=3.0), Gap(grow=1.0))))
     column = Column(lines)
     high, wide = column.height(u, room), column.width(u)
     left, upper = v.left + EDGE * u, top
@@ -268,19 +263,10 @@ MEANINGS = {
 _SCALES = ("utilisation", "axial utilisation")
 _ACTING = "acting"  # what of load cases is shown
 _IN_WORDS = (*THEORIES, _ACTING)
-UNITS = {
-    "tension": "kN",
-    "compression": "kN",
-    "moment": "kN·m",
-    "shear": "kN",
-    "load": "kN",
-    "load per length": "kN/m",
-    "load moment": "kN·m",
-    "reaction": "kN",
-    "reaction moment": "kN·m",
-    "inertia": "kN",
-    "inertia moment": "kN·m",
-}  # by what occurs of a colour
+# By what occurs of a colour.
+UNITS = dict.fromkeys(("tension", "compression", "shear", "load", "reaction", "inertia"), "kN")
+UNITS |= {"load per length": "kN/m"}
+UNITS |= dict.fromkeys(("moment", "load moment", "reaction moment", "inertia moment"), "kN·m")
 _MEANT = {name: [of for of in UNITS if of.split(" ")[0] == name] for name in MEANINGS}  # what shares a colour
 
 
@@ -328,17 +314,12 @@ def _arranged(
     meanings: tuple[tuple[str, str], ...], theme: Theme, width: float, heading: float, u: float
 ) -> tuple[list[Plate], bool]:
     """A legend in rows, and whether it stands beside the heading, which takes the left up to `heading`, else below it."""
-    entries = [
-        Row(
-            (
-                *([] if name in _IN_WORDS else [Drawn(partial(_swatch, name, theme), wide)]),
-                Text(said, 11.0, theme.text, "semibold" if name in _IN_WORDS else "regular"),
-            ),
-            6.0,
-        )
-        for name, said in meanings
-        for wide in (_BAR_WIDTH if name in _SCALES else 16.0,)
-    ]
+    entries = []
+    for name, said in meanings:
+        wide = _BAR_WIDTH if name in _SCALES else 16.0
+        swatch = [] if name in _IN_WORDS else [Drawn(partial(_swatch, name, theme), wide)]
+        text = Text(said, 11.0, theme.text, "semibold" if name in _IN_WORDS else "regular")
+        entries.append(Row((*swatch, text), 6.0))
     room = width - heading - (_ABOVE + _BETWEEN + 2 * _PAD) * u
     beside = max(entry.width(u) for entry in entries) <= room
     rows = _rows(entries, room, u) if beside else []
