@@ -241,6 +241,7 @@ def _state(model: Model, rows: Rows) -> _State:
 
 def _states(model: Model) -> tuple[_State, Kinks]:
     """Those of all rods, and what acts between their ends."""
+    found: tuple[_State, Kinks]
     revision, found = model.bent
     if revision != model.revision:  # a picture asks nine times
         with np.errstate(invalid="ignore"):  # of rods whose ends are nowhere, which are not drawn

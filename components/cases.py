@@ -154,7 +154,8 @@ def permanent(world: World) -> float:
 
 def factor_of_each(world: World, table: str) -> NDArray[np.float64]:
     """The factor of each load of a table, (loads,)."""
-    return getattr(Acting.of(world), table)[0]
+    found: NDArray[np.float64] = getattr(Acting.of(world), table)[0]
+    return found
 
 
 def unknown_case(world: World) -> str:
@@ -186,7 +187,8 @@ def settled(world: World, acting: Acting | None = None) -> NDArray[np.float64]:
     found[..., 2] *= particles.fixed_rotation
     for moved in found:
         moved[:, :2] = of_rigid_supports(world, moved[:, :2])
-    return found.reshape(-1, 3)
+    result: NDArray[np.float64] = found.reshape(-1, 3)
+    return result
 
 
 def _settlements(world: World) -> NDArray[np.float64]:

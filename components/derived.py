@@ -177,7 +177,8 @@ def own_slopes(fixity: Column) -> Column:
     """
     start, end = fixity.T
     rows = [[start * (4.0 - end), 2.0 * (start - 1.0) * end], [2.0 * (end - 1.0) * start, end * (4.0 - start)]]
-    return np.moveaxis(np.array(rows), -1, 0) / (4.0 - start * end)[:, None, None]
+    found: Column = np.moveaxis(np.array(rows), -1, 0) / (4.0 - start * end)[:, None, None]
+    return found
 
 
 @derives("rods", "span_load", f"fixity {_BETWEEN}")
@@ -344,7 +345,8 @@ def chord_rotation(world: World) -> Column:
     difference = rods.difference
     sine = difference[:, 0] * relative[:, 1] - difference[:, 1] * relative[:, 0]
     if world.first_order:
-        return sine / np.maximum(rods.original_length, 1e-300) ** 2
+        found: Column = sine / np.maximum(rods.original_length, 1e-300) ** 2
+        return found
     chord = np.arctan2(sine, (difference * (difference + relative)).sum(axis=1))
     rotation = particles.rotation[rods.between] - rods.plastic_rotation
     return with_full_turns(chord, rods.turning_shares, rotation)
@@ -353,7 +355,8 @@ def chord_rotation(world: World) -> Column:
 def with_full_turns(chord: Column, turning_shares: Column, rotation: Column) -> Column:
     """Rotations of chords (rods,) with those full turns that bring them nearest to the mean of their rigid ends."""
     mean = (turning_shares * rotation).sum(axis=1)
-    return chord + math.tau * np.rint((mean - chord) / math.tau)
+    found: Column = chord + math.tau * np.rint((mean - chord) / math.tau)
+    return found
 
 
 @derives(
@@ -441,7 +444,8 @@ def all_slopes(rods: Table[Any], slopes: Column, load: Column) -> Column:
     warped = np.where(bent, -0.5 * rods.free_curvature * length, 0.0)
     free = np.array([1.0, -1.0]) * warped[:, None] + loaded / 3.0 - loaded[:, ::-1] / 6.0  # between hinges
     own = own_slopes(rods.fixity)
-    return np.einsum("rij,rj->ri", own, slopes) + np.einsum("rij,rj->ri", np.eye(2) - own, free)
+    found: Column = np.einsum("rij,rj->ri", own, slopes) + np.einsum("rij,rj->ri", np.eye(2) - own, free)
+    return found
 
 
 # sin πξ as a u + b u² of u = ξ (1 − ξ), exact in the middle and at quarters, elsewhere but for 0.002.

@@ -165,7 +165,8 @@ class Field(Generic[T]):
     def __get__(self, handle: Any, owner: type) -> Field[T] | T:
         if handle is None:
             return self
-        return handle.world.read(handle, self)
+        found: Field[T] | T = handle.world.read(handle, self)
+        return found
 
     def __set__(self, handle: Any, value: T | None) -> None:
         handle.world.assign([handle], self.name, [value])

@@ -58,7 +58,8 @@ _SPOKEN = SimpleNamespace(code=ENGLISH, catalogue=gettext.NullTranslations())  #
 
 def language() -> str:
     """The code of the present language: "en"."""
-    return _SPOKEN.code
+    found: str = _SPOKEN.code
+    return found
 
 
 def speak(code: str) -> None:
@@ -102,7 +103,8 @@ def tr(message: str, /, **values: Any) -> str:
     A text that was said before is said anew.
     """
     if not message or isinstance(message, Said):  # of "" catalogues hold their own heading
-        return _anew(message)
+        found: str = _anew(message)
+        return found
     return Said(_filled(_SPOKEN.catalogue.gettext(message), values), tr, message, **values)
 
 

@@ -186,7 +186,8 @@ class Load(Handle):
     @property
     def particle(self) -> Particle:
         """The particle it acts on."""
-        return self.world.tables["particles"][self.on]
+        found: Particle = self.world.tables["particles"][self.on]
+        return found
 
 
 class SpanLoad(Handle):

@@ -249,4 +249,5 @@ def rods_without_length(world: Store, rows: NDArray[np.intp]) -> NDArray[np.intp
     """Those of these rods whose ends are at the same place and that have no rest length of their own."""
     ends = world.column("particles.position")[world.column("rods.between")[rows]]
     together = (ends[:, 0] == ends[:, 1]).all(axis=1)
-    return rows[together & np.isnan(world.column("rods.prescribed_rest_length")[rows])]
+    found: NDArray[np.intp] = rows[together & np.isnan(world.column("rods.prescribed_rest_length")[rows])]
+    return found

@@ -612,7 +612,8 @@ def thrust(world: World) -> NDArray[np.float64]:
     rods = world.tables["rods"]
     pulled = rods.end_axial_force / rods.tension_limit[:, None]
     pressed = -rods.end_axial_force / rods.compression_limit[:, None]
-    return np.maximum(pulled, pressed).max(axis=1, initial=0.0)
+    found: NDArray[np.float64] = np.maximum(pulled, pressed).max(axis=1, initial=0.0)
+    return found
 
 
 def beside_thrust(share: NDArray[np.float64]) -> NDArray[np.float64]:

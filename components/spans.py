@@ -418,7 +418,8 @@ def values(polynomials: Column, shares: Column) -> Column:
 
 def derivative(polynomials: Column) -> Column:
     """Of polynomials (n, d), by ξ, (n, d − 1)."""
-    return polynomials[:, 1:] * np.arange(1.0, polynomials.shape[1])
+    found: Column = polynomials[:, 1:] * np.arange(1.0, polynomials.shape[1])
+    return found
 
 
 def _pressed(force: Column) -> Rows:

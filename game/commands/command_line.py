@@ -55,7 +55,8 @@ def _of(module: str) -> Callable[[list[str]], int]:
     """What runs a command; its module is imported only for it."""
 
     def run(words: list[str]) -> int:
-        return import_module(f"pinjoint.commands.{module}").command(words)
+        found: int = import_module(f"pinjoint.commands.{module}").command(words)
+        return found
 
     return run
 

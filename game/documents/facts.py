@@ -162,4 +162,5 @@ def _differs_from_default(field: Field[Any], column: Column) -> NDArray[np.bool_
     word = np.uint64 if default.nbytes % 8 == 0 else np.uint8
     default = default.view(word).ravel()
     bits = column.view(word).reshape(len(column), len(default))
-    return (bits != default).any(axis=1)
+    found: NDArray[np.bool_] = (bits != default).any(axis=1)
+    return found

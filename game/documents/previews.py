@@ -56,4 +56,7 @@ def _example(name: str) -> Model:
 @cache
 def _states() -> dict[str, dict[str, Any]]:
     """By example and column what differs then from its beginning; tests/golden/previews.py computes it."""
-    return json.loads((files("pinjoint.assets") / "previews.json").read_text("utf-8"))
+    found: dict[str, dict[str, Any]] = json.loads(
+        (files("pinjoint.assets") / "previews.json").read_text("utf-8")
+    )
+    return found

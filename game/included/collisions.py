@@ -42,7 +42,8 @@ def free_speeds(model: Model) -> Array:
     particles = model.particles
     free = np.logical_not(particles.fixed.all(axis=1) | nodes(model))
     mass = particles.mass[free]
-    return np.hypot(*particles.velocity[free].T) * np.sqrt(mass / (mass.mean() if len(mass) else 1.0))
+    found: Array = np.hypot(*particles.velocity[free].T) * np.sqrt(mass / (mass.mean() if len(mass) else 1.0))
+    return found
 
 
 def rayleigh(speed: Array, mean_square: float) -> Array:

@@ -21,7 +21,8 @@ def _course(session: Session) -> Course:
     """The lesson that a person is in. Raises Refusal."""
     if session.course is None:
         raise Refusal("There is no lesson now: D opens the start page, where lessons stand at the top.")
-    return session.course
+    found: Course = session.course
+    return found
 
 
 action("check answer", "f5", "check the task of the lesson", while_drawing=True)(

@@ -94,7 +94,8 @@ class DisplacementTables(Tables):
         """What every rod adds to an entry of K, or behind its last column to F (rods,)."""
         if j < len(self.solution.unknowns):
             return self.solution.shares(i, j)
-        return -(self.fixed_end_forces * self.solution.ways[:, :, i]).sum(axis=1)
+        found: Array = -(self.fixed_end_forces * self.solution.ways[:, :, i]).sum(axis=1)
+        return found
 
     def terms(self, i: int, j: int) -> list[tuple[str, float]]:
         """The same by the names of those that add something."""

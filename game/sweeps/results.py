@@ -105,7 +105,8 @@ class Results:
         ]
         made = pyarrow.BufferOutputStream()
         parquet.write_table(pyarrow.table(arrays, schema=pyarrow.schema(fields)), made)
-        return made.getvalue().to_pybytes()
+        found: bytes = made.getvalue().to_pybytes()
+        return found
 
     # --- a picture ---------------------------------------------------------------------------------------
 

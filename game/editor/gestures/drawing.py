@@ -260,7 +260,8 @@ class DrawArrow(Drawing):
 
     @property
     def _field(self) -> Field[Any]:
-        return getattr(type(self.elements[0]), self.field)
+        found: Field[Any] = getattr(type(self.elements[0]), self.field)
+        return found
 
     @property
     def unit(self) -> tuple[str, str]:
@@ -348,7 +349,8 @@ class DrawSpanLoad(DrawArrow):
 
     @property
     def _field(self) -> Field[Any]:
-        return getattr(SpanLoad, self.field)
+        found: Field[Any] = getattr(SpanLoad, self.field)
+        return found
 
     def start(self, context: Context) -> Vector:
         """Where the arrow begins (m): at the last place on the rod, as it is drawn."""
