@@ -181,8 +181,10 @@ class Program:
             self._support = extra["support"][:, :2]
             self._support[:] = lasting_forces(model)[self._held_rows]
         self._arm = arm_of(model) if self._writer.bends else 1.0
+        self._strays = np.zeros(0, dtype=np.intp)
         if self._writer.bends:
-            self._stop_turning()
+            particles = model.particles
+            self._strays = np.flatnonzero((particles.turning == 0.0) & (particles.angular_velocity != 0.0))
             extra |= self._of_bending(extra)
         self._sides = [(b, self._sides_of(b)) for b in self._writer.events]
         extra |= {b.sides: sides for b, sides in self._sides}
@@ -373,13 +375,6 @@ class Program:
         yields = self.model.settings.plasticity
         self._observed = self._after("dt", "observe", yields=yields, **storage, **apart)
 
-    def _stop_turning(self) -> None:
-        """A particle that has no rigid ends any more has no rotation that could go on."""
-        particles = self.model.particles
-        stray = (particles.turning == 0.0) & (particles.angular_velocity != 0.0)
-        if stray.any():
-            self.model.writable("particles.angular_velocity")[stray] = 0.0
-
     def _forget_moments(self) -> None:
         """Nothing bends: no moments are left of when something did."""
         for path in (*(turns for _, turns in _ACTING), "rods.end_moment"):
@@ -518,7 +513,14 @@ class Program:
         return np.zeros(0, dtype=np.int64), self._arrays["displacement"], self._arrays["velocity"]
 
     def _catch_up(self) -> None:
-        """Before steps, bring the sides of events up to the present state, and make room for all near pairs."""
+        """Before steps, bring the sides of events up to the present state, and make room for all near pairs.
+
+        A particle that has no rigid ends any more has no rotation that could go on; it is left as it is until time passes,
+        so that no picture changes the state.
+        """
+        if self._strays.size:
+            self.model.writable("particles.angular_velocity")[self._strays] = 0.0
+            self._strays = self._strays[:0]
         if self._sides and not self._is_fresh:
             for b, sides in self._sides:
                 sides[:] = self._sides_of(b)
