@@ -54,6 +54,7 @@ def test_several_rods_are_a_path_in_the_window_and_one_after_its_lines() -> None
     shown = texts(session)
     assert "envelope of 1 kN downwards that moves along AB and BC" in shown
     assert "0.8196 kN·m (AB, 170 cm)" in shown
+    assert sum(one.startswith("y: ") and "…" in one for one in shown) == 4, "of every support"
     session.press("ctrl+i")
     assert not session.view.envelope
     session.select(session.rods["AB"])

@@ -81,7 +81,7 @@ def draw_enveloped_reactions(sheet: Sheet, envelope: Any) -> None:
         owner = ("particles", row)
         key = ("envelope.reaction", 3 * row + axis)
         colour = sheet.colour_of("reaction")
-        write(sheet, text, places, colour, key, owner, own=owner, short=short)
+        write(sheet, text, places, colour, key, owner, own=owner, short=short, leads=(at[None], ways[0]))
         sheet.explain("reaction", at[None], at[None])
 
 
