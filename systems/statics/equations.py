@@ -555,17 +555,26 @@ class Structure:
         leaning = (axis * change[:, ::-1]).sum(axis=1) / np.where(
             response.length > 0.0, response.length, np.inf
         )
-        own, summed = self.bending.end_stiffness[:, ::2], self._turned_by(np.abs(field))
-        bent = own * ((turns + leaning[:, None]) ** 2 + ROUND_OFF / SOFT * summed**2)
+        bent = self.bending.end_stiffness[:, ::2] * (turns + leaning[:, None]) ** 2
         sprung = (self.springs * self.along_supports(field) ** 2).sum()
         return float((self.stiffness / self.rest_length) @ along**2 + bent.sum() + sprung)
+
+    def made_up(self, vector: Array) -> float:
+        """The energy (kN·m) of a motion that the rounding of short members' stiffness, 12 EI/L³, may bring about."""
+        if self.bending is None:
+            return 0.0
+        summed = self._turned_by(np.abs(self.spread(vector)))
+        return float(ROUND_OFF * (self.bending.end_stiffness[:, ::2] * summed**2).sum())
 
     # --- forces --------------------------------------------------------------------------------------
 
     @cached_property
     def unmoved(self) -> Response:
-        """The rods at the original positions without plastic strain."""
-        return self.respond(np.zeros(self.unknown.shape), np.zeros(len(self.ends)))
+        """The rods at the original positions without plastic strain.
+
+        Found without a rest: until it is, Python 3.11 lets no thread find that of any other structure.
+        """
+        return self._response(np.zeros(self.unknown.shape), np.zeros(len(self.ends)))
 
     @cached_property
     def initial_tangent(self) -> Matrix:
@@ -587,6 +596,11 @@ class Structure:
         for ever; None: by their laws.
         """
         rest()
+        return self._response(displacement, plastic_strain, share, piece)
+
+    def _response(
+        self, displacement: Array, plastic_strain: Array, share: float = 0.0, piece: Piece | None = None
+    ) -> Response:
         change = self.relative(displacement)
         stretch, axis, length = self._stretch(change)
         plastic_strain = self.yielding_parts(plastic_strain)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pinjoint.systems.statics.behind import rest
 from pinjoint.systems.statics.complementarity import yielding_set, yielding_sets
 from pinjoint.systems.statics.equations import (
     AT_LIMIT,
@@ -170,6 +171,7 @@ class Path:
 
     def start(self, displacement: Array, plastic_strain: Array) -> Point:
         """The point at t = 0 in this state; rods beyond a strength yield at once."""
+        rest()
         plastic_strain = self.structure.yielding_parts(plastic_strain)
         moved = displacement.any() or plastic_strain.any() or self.share(0.0)
         response = self.respond(displacement, plastic_strain, 0.0) if moved else self.structure.unmoved

@@ -276,11 +276,15 @@ class DrawArrow(Drawing):
         """The text of a value."""
         return written.stated(value, self._field.shown[0], written.DIGITS)
 
+    def finish(self, context: Context, pixel: Vector) -> None:
+        """The same; where it begins, only what is dropped there, or typed, takes a load away."""
+        away = math.dist(context.view.camera.to_pixels(self.start(context)), pixel) / context.view.pixel_ratio
+        if not self.typed and self.value(context, pixel) in (0.0, (0.0, 0.0)) and away <= PARTICLE_REACH:
+            raise Refusal("This arrow has no length: draw it farther, or type its value, 0 for none.")
+        super().finish(context, pixel)
+
     def drop(self, context: Context, pixel: Vector) -> None:
         value, elements = self.value(context, pixel), [one for one in self.elements if one.exists]
-        away = math.dist(context.view.camera.to_pixels(self.start(context)), pixel) / context.view.pixel_ratio
-        if not self.typed and value in (0.0, (0.0, 0.0)) and away <= PARTICLE_REACH:
-            raise Refusal("This arrow has no length: draw it farther, or type its value, 0 for none.")
         if elements:
             draw_load(context.model, elements, self.field, value)
             named, rods = elements[0].said, begun(heading(context.model, elements))
