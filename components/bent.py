@@ -280,10 +280,9 @@ def inner_forces(model: Model, rows: Rows, quantity: str) -> Curves:
     ends = getattr(rods, name)
     if quantity == MOMENT:
         thrust = 0.0 if model.first_order else rods.axial_force[:, None]
-        found = moments_along(ends, between, state.left, state.length, thrust * cubic(*state.slopes.T))
-        if has_struts(model):
-            found = found.plus(np.outer(rods.axial_force * rods.lateral_deflection, HALF_SINE))
-        return found.some(rows)
+        by_thrust = thrust * cubic(*state.slopes.T)
+        of_struts = rods.axial_force * rods.lateral_deflection if has_struts(model) else None
+        return moments_along(ends, between, state.left, state.length, by_thrust, of_struts).some(rows)
     x, y = state.left.T
     direction = state.left if quantity == SHEAR else np.stack([-y, x], axis=1)
     return forces_along(ends[:, 0], between, direction).some(rows)

@@ -413,9 +413,8 @@ def diagrams(
     slopes = all_slopes(rods, slopes, on_axis(between.on_clamped(rods.rest_length), axis)[1])
     bending_moment, left = moment * [-1.0, 1.0], np.concatenate([-y, x], axis=1)
     thrust = (bent * axial_force * length)[:, None] * cubic(*slopes.T)
-    moments = moments_along(bending_moment, between, left, length, thrust)
-    if aside is not None:
-        moments = moments.plus(np.outer(axial_force * aside, HALF_SINE))
+    of_struts = None if aside is None else axial_force * aside
+    moments = moments_along(bending_moment, between, left, length, thrust, of_struts)
     return {
         "end_axial_force": axial_force[:, None] - on_ends[..., 0] * x - on_ends[..., 1] * y,
         "shear": shear[:, None] + on_ends[..., 1] * x - on_ends[..., 0] * y,
@@ -458,15 +457,24 @@ def cubic(start: Column, end: Column) -> Column:
     return np.stack([np.zeros(len(start)), start, -(2.0 * start + end), start + end], axis=1)
 
 
-def moments_along(ends: Column, between: Kinks, left: Column, length: Column, by_thrust: Column) -> Curves:
+def moments_along(
+    ends: Column,
+    between: Kinks,
+    left: Column,
+    length: Column,
+    by_thrust: Column,
+    of_struts: Column | None = None,
+) -> Curves:
     """M(ξ) = M_s (1 − ξ) + M_e ξ + what acts between the ends makes of simple beams + N v(ξ) of all rods.
 
-    ends: M_s and M_e, (rods, 2). left: unit vectors to the left of the chords, length: theirs. by_thrust: N v, (rods, 4).
+    ends: M_s and M_e, (rods, 2). left: unit vectors to the left of the chords, length: theirs. by_thrust: N v, (rods, 4),
+    but for the half sine of struts, of which of_struts has N v in the middle, (rods,); None: there are none.
     """
     straight = by_thrust.copy()
     straight[:, 0] += ends[:, 0]
     straight[:, 1] += ends[:, 1] - ends[:, 0]
-    return between.bulges(left, length).plus(straight)
+    found = between.bulges(left, length).plus(straight)
+    return found if of_struts is None else found.plus(np.outer(of_struts, HALF_SINE))
 
 
 def _largest_moment(moments: Curves, length: Column) -> Column:

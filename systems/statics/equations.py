@@ -559,7 +559,7 @@ class Structure:
         sprung = (self.springs * self.along_supports(field) ** 2).sum()
         return float((self.stiffness / self.rest_length) @ along**2 + bent.sum() + sprung)
 
-    def made_up(self, vector: Array) -> float:
+    def round_off_of_energy(self, vector: Array) -> float:
         """The energy (kN·m) of a motion that the rounding of short members' stiffness, 12 EI/L³, may bring about."""
         if self.bending is None:
             return 0.0

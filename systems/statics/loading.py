@@ -110,7 +110,7 @@ class Loading:
         """True if the load moves the structure against no more stiffness than round-off, and than what keeps it regular."""
         structure, rate, push = self.path.structure, tangent.rate, self.path.push(self.point.response)
         energy = float(rate @ push) - NO_STIFFNESS * float(structure.weight @ rate**2)
-        return energy < SOFT * structure.effort(rate, self.point.response) + structure.made_up(rate)
+        return energy < SOFT * structure.effort(rate, self.point.response) + structure.round_off_of_energy(rate)
 
     # --- on the way ----------------------------------------------------------------------------------
 
