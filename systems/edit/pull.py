@@ -63,7 +63,7 @@ class Hand:
         return replace(self, anchor=anchor)
 
     def throwing(self, model: Model, velocity: Vector) -> Hand:
-        """This hand as it lets go at a velocity (m/s), as far as supports and taut rods leave that free; as it is if wholly held."""
+        """This hand as it lets go at a velocity (m/s), as far as supports and taut rods let that be; as it is where none."""
         row, rods = self.particle.row, model.rods
         mine = (rods.between == row).any(axis=1)
         mine &= ~(rods.tension_only & (rods.axial_force <= 0.0))

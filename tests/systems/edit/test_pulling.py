@@ -173,6 +173,6 @@ def test_pulling_harder_than_a_rod_bears_makes_it_yield_and_says_so(triangle: Se
     triangle.press("drag", triangle.point(1.0, 1.0))
     triangle.press("drag to", triangle.point(1.0, 3.2))
     run_frames(triangle, 400)
-    assert set(triangle.rods.names[r] for r in triangle.rods.plastic_strain.nonzero()[0]) == {"AB", "BC"}
+    assert {triangle.rods.names[row] for row in triangle.rods.plastic_strain.nonzero()[0]} == {"AB", "BC"}
     assert "yield" in triangle.view.status.notice
     assert preview(triangle).label.endswith(" kN")
