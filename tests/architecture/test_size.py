@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_118,
-    "files": 385,
-    "names": 3_978,  # functions, classes and constants of modules
-    "public names": 2_369,
-    "numbers": 1_539,  # other than 0, 1 and 2, in constants and defaults
+    "lines": 72_338,
+    "files": 386,
+    "names": 3_993,  # functions, classes and constants of modules
+    "public names": 2_381,
+    "numbers": 1_568,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 59_892,
+    "lines of tests": 60_068,
 }
 
 
