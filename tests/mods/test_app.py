@@ -56,8 +56,8 @@ def test_models_of_a_mod_are_opened_by_name(tmp_path: Path, write_mod: Write) ->
     assert "apple_truss" not in models.bundled()
 
 
-TASK = '''{{"task": "Hang a weight on B.", "model": "truss", "until": "particles.B.force.y < 0", "right": "It hangs.",
-"solution": [{{"set": "particles.B.force=0,{load}"}}]}}'''.replace("\n", " ")
+TASK = """{{"task": "Hang a weight on B.", "model": "truss", "until": "particles.B.force.y < 0", "right": "It hangs.",
+"solution": [{{"set": "particles.B.force=0,{load}"}}]}}""".replace("\n", " ")
 
 
 @pytest.mark.parametrize(("load", "rc"), [(-5, 0), (5, 1)])
