@@ -536,6 +536,12 @@ def drawn_positions(model: Model) -> NDArray[np.float64]:
     return model.particles.position + model.particles.displacement * drawn_scale(model)
 
 
+def drawn_at(model: Model, particle: Particle) -> Vector:
+    """Where a particle is drawn (m)."""
+    x, y = drawn_positions(model)[particle.row].tolist()
+    return x, y
+
+
 def drawn_places(model: Model) -> NDArray[np.float64]:
     """All that a picture of a model is to show (m), (n, 2): positions as drawn and deflected, bent rods, and points of other
     elements; what only a thin line shows deflected up to a structure's length away.

@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_338,
+    "lines": 72_384,
     "files": 386,
-    "names": 3_993,  # functions, classes and constants of modules
-    "public names": 2_381,
+    "names": 3_997,  # functions, classes and constants of modules
+    "public names": 2_384,
     "numbers": 1_568,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 60_068,
+    "lines of tests": 60_169,
 }
 
 
