@@ -210,12 +210,15 @@ class PullParticle(Gesture):
     def _flick(self, context: Context) -> Vector | None:
         """The velocity of the pointer (m/s) over the last LATELY seconds shown; None if it moved less than FLICK."""
         view, model, now = context.view, context.model, context.time
-        since = now - LATELY * context.document.live.clock.factor * natural_pace(model)
-        begun, start = next((place for place in reversed(self._path) if place[0] <= since), self._path[0])
+        lately = LATELY * context.document.live.clock.factor * natural_pace(model)
+        begun, start = next(
+            (place for place in reversed(self._path) if place[0] <= now - lately), self._path[0]
+        )
         (before, _), (last, end) = self._path[max(len(self._path) - 2, 0)], self._path[-1]
         moved, passed = np.subtract(end, start), (last if now - last < 1.5 * (last - before) else now) - begun
+        passed = max(passed, lately - (last - before))  # less passes where the machine cannot keep the pace
         points = moved * model.settings.displacement_scale * view.camera.scale / view.pixel_ratio
-        if passed <= 0.0 or np.hypot(*points) < FLICK:
+        if np.hypot(*points) < FLICK:
             return None
         x, y = (moved / passed).tolist()
         return x, y

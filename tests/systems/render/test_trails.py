@@ -42,7 +42,8 @@ def test_what_is_selected_leaves_a_trail_that_ends_where_time_is_taken_back(swin
 
 def test_the_view_goes_with_the_particle_that_it_follows(swinging: Session) -> None:
     bob, view = swinging.particles["bob"], swinging.view
-    swinging.click(*drawn_positions(swinging.model)[bob.row], "right click")
+    x, y = drawn_positions(swinging.model)[bob.row].tolist()
+    swinging.click(x, y, "right click")
     assert "follow" in [entry.action for group in view.menu.groups for entry in group]
     swinging.act("follow")
     (pixel,) = view.camera.to_pixels(drawn_positions(swinging.model)[[bob.row]])
