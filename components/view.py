@@ -306,12 +306,9 @@ class View:
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     provisional: why what is shown is no equilibrium, which makes results pale; "": it is one.
     card: a task of a lesson, in place of a model. cuts: rods that are drawn cut. has_units: values of forces tell theirs.
-<<<<<<< HEAD
     trails: where what is selected was. followed: the particle that the view goes with, and where it was drawn (m); or None.
     sound: what happens is heard, in a window.
-=======
     bare: loads, reactions and velocities are left out, as beside diagrams on paper.
->>>>>>> main
     near_buckling: rows of rods whose compression is nearly critical: they pulse as a shape swings.
     steady: a hand moves something, so that labels stay beside what they belong to. arrow_scales: of vectors by Field, how
     much a point of an arrow is that is drawn or dragged. session: a weak reference to the context that shows it; or None.
