@@ -101,55 +101,65 @@ def figure(
     structure is wider than high.
     """
     model.delete(list(model.grids))
-    wide, high = shape(model)
     row = row or in_a_row(layout, model)
     rooms = [((WIDTH - (row - 1) * GUTTER) / row, layout.figure * unit, 0.0)]
     if grows:
+        wide, high = shape(model)
         across, tall = ROOMS[wide > high]
         rooms += [(WIDTH, _PART * ROOMS[0][1], _SPARE), (across, tall - _CAPTION, 2.0 * _SPARE)]
     view = View(legend=False, has_scale=False, all_diagrams=diagrams is not None, quantity=diagrams or AXIAL)
     view.names, view.shape, view.enveloped = measured, over, enveloped
     view.cuts, view.has_units, view.bare, view.pixel_ratio = tuple(cuts), has_units, bare, unit
-    pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
-    model.settings.diagram_scale = scale_to(_DIAGRAM, pulled)
+    frame = is_frame(model)
+    model.settings.diagram_scale = scale_to(_DIAGRAM, 0.0 if frame else largest(model.rods.axial_force))
     model.settings.displacement_scale, model.settings.original_diagrams = 0.0, not moved
     loaded = full_load(model).any(axis=1) | measured
     model.tag_only([model.particles[row] for row in np.flatnonzero(loaded).tolist()], DiagramShown)
     theme = replace(load_theme("light"), background=(255, 255, 255, 255))
-    beside = unit * (_BESIDE_IT + _MOMENTS * is_frame(model))
-    right, under = (unit * _RIGHT, unit * _UNDER) if measured else (0.0, 0.0)
     found, said = list[Figure](), caption
-    for across, tall, spare in rooms:
-        above = unit * (_ABOVE + _REACTIONS * measured + 0.5 * spare)
-        width, below = across / PIXEL - right, unit * (_BELOW + 0.5 * _REACTIONS * measured + spare)
-        room = width - 2.0 * beside
-        height = min(room * high / wide + above + below, tall / PIXEL - under)
-        if spare:
-            width = min(width, (height - above - below) * wide / high + 2.0 * (beside + unit * spare))
-            room = width - 2.0 * beside
-        view.camera = Camera(viewport=Viewport(0, 0, int(width), int(height)))
-        inner = Viewport(int(beside), int(above), int(room), int(height - above - below))
-        view.camera.fit(model.particles.position, 0.0, inner, 1.0)
-        if bare and pulled == 0.0:
+    for room in rooms:
+        view.camera = _camera(model, unit, *room, measured=measured)
+        if bare and frame:
             model.settings.diagram_scale = max(_TALL * unit / diagram_room(view.camera.viewport, unit), 1.0)
         view.largest_force = _SHORTER * largest_force(model, view)
         if moved:
-            bending = np.flatnonzero(model.rods.bending_stiffness > 0.0)
-            bows = extremes(deflections(model, bending).stretches)[0]
-            most = max(float(np.hypot(*model.particles.displacement.T).max(initial=0.0)), largest(bows))
-            model.settings.displacement_scale = scale_to(_DIAGRAM * unit / view.camera.scale, most)
-            scale = written.given(model.settings.displacement_scale)
-            said = joined([caption, tr("displacements × {scale}", scale=scale)], ", ")
+            scale = model.settings.displacement_scale = _well_seen(model, view)
+            said = joined([caption, tr("displacements × {scale}", scale=written.given(scale))], ", ")
         picture = compose(model, view, theme)
         if measured:
             picture.marks.extend(_dimensions(model, view, theme))
-            whole = Viewport(0, 0, int(width + right), int(height + under))
-            picture = replace(picture, viewport=whole)
+            wide, high = picture.viewport.width + unit * _RIGHT, picture.viewport.height + unit * _UNDER
+            picture = replace(picture, viewport=Viewport(0, 0, int(wide), int(high)))
         found.append(Figure(picture, layout.text(said, "caption")))
         if picture.untold <= (0, _NUMBERED):
             break
     made = min(found, key=lambda figure: figure.picture.untold)
     return made.width, [made]
+
+
+def _camera(model: Model, unit: float, across: float, tall: float, spare: float, *, measured: bool) -> Camera:
+    """Where a structure stands in a room of so many points across, and tall at most, with spare pixels around it."""
+    wide, high = shape(model)
+    right, under = (unit * _RIGHT, unit * _UNDER) if measured else (0.0, 0.0)
+    beside = unit * (_BESIDE_IT + _MOMENTS * is_frame(model))
+    above = unit * (_ABOVE + _REACTIONS * measured + 0.5 * spare)
+    below = unit * (_BELOW + 0.5 * _REACTIONS * measured + spare)
+    width = across / PIXEL - right
+    height = min((width - 2.0 * beside) * high / wide + above + below, tall / PIXEL - under)
+    if spare:
+        width = min(width, (height - above - below) * wide / high + 2.0 * (beside + unit * spare))
+    camera = Camera(viewport=Viewport(0, 0, int(width), int(height)))
+    inner = Viewport(int(beside), int(above), int(width - 2.0 * beside), int(height - above - below))
+    camera.fit(model.particles.position, 0.0, inner, 1.0)
+    return camera
+
+
+def _well_seen(model: Model, view: View) -> float:
+    """By how much displacements are enlarged so that they are well seen."""
+    bending = np.flatnonzero(model.rods.bending_stiffness > 0.0)
+    bows = extremes(deflections(model, bending).stretches)[0]
+    most = max(float(np.hypot(*model.particles.displacement.T).max(initial=0.0)), largest(bows))
+    return scale_to(_DIAGRAM * view.pixel_ratio / view.camera.scale, most)
 
 
 def _dimensions(model: Model, view: View, theme: Theme) -> Iterator[Mark]:
