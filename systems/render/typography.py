@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable
 from functools import cache, lru_cache
 from importlib.resources import files
+from itertools import accumulate, takewhile
 from typing import Any, TypeVar
 
 T = TypeVar("T")
@@ -29,17 +30,23 @@ def text_width(text: str, size: int, weight: str = "regular") -> int:
     Every advance is rounded to whole pixels, as hinted fonts are drawn. A character that the font lacks
     counts 0.7 em.
     """
-    return max(
-        sum(_character_width(character, size, weight) for character in line) for line in text.split("\n")
-    )
+    wide = _widths(size, weight)
+    return max(sum(map(wide.__getitem__, line)) for line in text.split("\n"))
 
 
-@cache
-def _character_width(character: str, size: int, weight: str) -> int:
-    metrics = _metrics()[weight]
-    em = float(metrics["units_per_em"])
-    advance = float(metrics["advance"].get(character, 0.7 * em))
-    return math.floor(advance * size / em + 0.5)
+class _Widths(dict[str, int]):
+    """The width in pixels of each character at a font size."""
+
+    def __init__(self, size: int, weight: str) -> None:
+        self._metrics, self._size = _metrics()[weight], size
+
+    def __missing__(self, character: str) -> int:
+        em = float(self._metrics["units_per_em"])
+        advance = float(self._metrics["advance"].get(character, 0.7 * em))
+        return self.setdefault(character, math.floor(advance * self._size / em + 0.5))
+
+
+_widths = cache(_Widths)
 
 
 @cache
@@ -69,13 +76,8 @@ def shortened(text: str, width: float, size: int, weight: str = "regular") -> st
 
 def fitting(characters: Iterable[str], width: float, size: int, weight: str = "regular") -> int:
     """How many characters of a text, from the first one, fit into a width; none into less than none."""
-    count, taken = 0, 0
-    for character in characters:
-        taken += _character_width(character, size, weight)
-        if taken > width:
-            break
-        count += 1
-    return count
+    ends = accumulate(map(_widths(size, weight).__getitem__, characters))
+    return sum(1 for _ in takewhile(width.__ge__, ends))
 
 
 @lru_cache(maxsize=2048)  # a form asks for the heights of all that it could explain, several times a frame

@@ -95,11 +95,13 @@ def steady(sheet: Sheet, key: tuple[str, int], largest: float) -> float:
 def draw_loads(sheet: Sheet) -> None:
     """The force on each particle, its loads at full size included, where no diagram shows it."""
     model = sheet.model
+    if sheet.view.all_diagrams:
+        return
     force = full_load(model)[:, :2]
     loaded = (force[:, 0] != 0.0) | (force[:, 1] != 0.0)
     loaded[sheet.tagged(DiagramShown, "particles")] = False
     rows = sheet.particles[loaded[sheet.particles]]
-    if sheet.view.all_diagrams or not 0 < len(rows) <= MOST:
+    if not 0 < len(rows) <= MOST:
         return
     along, size = _directions(force[rows]), np.hypot(*force[rows].T)
     length = lengths(sheet, FORCES, size, max(float(np.hypot(*force.T).max()), sheet.view.largest_force))
@@ -212,8 +214,7 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
     taken = np.full((len(sheet.centres), 2), NO_SUPPORT)  # by reactions: a side of each particle, by axis
     applied = particles.applied_force - borne_between(sheet.model)  # rows of arrows show the others
-    if sheet.model.first_order:
-        left_out = ~nodes(sheet.model)
+    if sheet.model.first_order and (left_out := ~nodes(sheet.model)).any():
         applied[left_out] = full_load(sheet.model)[left_out, :2]
     for name, force in (("reaction", particles.reaction[shown]), ("load", applied[shown])):
         index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST))

@@ -230,16 +230,17 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) 
     model = sheet.model
     every = inner_forces(model, np.arange(model.rods.count), quantity)
     every.polynomials[~(np.abs(every.polynomials) < _LARGEST).all(axis=1)] = 0.0
-    largest = float(np.abs(every.at(every.with_kinks(np.linspace(0.0, 1.0, 5)))).max(initial=0.0))
+    few = every.with_kinks(np.linspace(0.0, 1.0, 5))
+    sampled = every.at(few)
+    largest = float(np.abs(sampled).max(initial=0.0))
     if quantity == AXIAL:  # small ones, as bending shortens rods, look small
         shear = np.abs(model.rods.shear)
         largest = max(largest, _SHARE * float(shear[shear < _LARGEST].max(initial=0.0)))
     if largest <= SMALLEST:
         return None
     side = np.full(len(every), -1.0 if quantity == MOMENT else 1.0)
-    few = every.with_kinks(np.linspace(0.0, 1.0, 5))
     whole = baseline(sheet, np.arange(len(every)))
-    fitting = max(largest, room * crowding(sheet, *stations(whole, few, side), every.at(few), taken))
+    fitting = max(largest, room * crowding(sheet, *stations(whole, few, side), sampled, taken))
     scale = room * model.settings.diagram_scale / steady(sheet, (f"diagrams.{quantity}", 0), fitting)
     scale = min(scale, _FAR / largest)
     base, curves, side = whole.some(rows), every.some(rows), side[rows]
@@ -278,9 +279,9 @@ def baseline(sheet: Sheet, rows: Rows) -> Axes:
 
 def stations(base: Axes, shares: Values, side: Values) -> tuple[Points, Points]:
     """Points of baselines in pixels, and unit normals to the left as drawn, or where `side` is −1 to the right."""
-    x, y = np.moveaxis(base.tangents(shares), -1, 0)
-    left = np.stack([y, -x], axis=-1) / np.maximum(np.hypot(x, y), 1e-300)[..., None]
-    return base.points(shares), left * side[:, None, None]
+    way = base.tangents(shares)
+    length = np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-300)[..., None]
+    return base.points(shares), way[..., ::-1] * [1.0, -1.0] / length * side[:, None, None]
 
 
 # --- areas -------------------------------------------------------------------------------------------
@@ -389,9 +390,9 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
         diagram, selected = diagram.some(selected), selected[selected]
     which, number, shares, value = _told(sheet, diagram)
     keys, selected = _PLACES * diagram.rows[which] + number, selected[which]
-    seen = np.arange(len(which))
+    seen, (at, normal) = np.arange(len(which)), diagram.at(which, shares)
     if not diagram.is_straight:
-        seen = seen[sheet.sees(diagram.at(which, shares)[0])]
+        seen = seen[sheet.sees(at)]
     shown, worth = most_important(sheet, field, keys, value, seen, np.where(selected, 1e6, 0.0))
     if not len(shown):
         return
@@ -401,7 +402,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
     texts = [_written(sheet, quantity, each, nothing, few) for each in value.tolist()]
     lines: Literal["cover", "spare"] = "spare" if few else "cover"
     half, height = half_sizes(sheet, texts, size), diagram.scale * np.abs(value)
-    at, normal = diagram.at(which, shares[shown])
+    at, normal = at[shown], normal[shown]
     along = normal[:, ::-1] * [-1.0, 1.0] * diagram.side[which, None]
     normal = normal * np.where(value < 0.0, -1.0, 1.0)[:, None]
     edge = at + normal * height[:, None]
