@@ -15,6 +15,7 @@ from pinjoint.components.bent import AXIAL, Parts, drawn_scale, middles
 from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends
 from pinjoint.components.slider import ARROW, CHOICES, EDGE, GAP, SUPPORT, Place, SliderStack
 from pinjoint.components.toolbar import Menu, Tool, Toolbar
@@ -516,6 +517,12 @@ class View:
 def drawn_positions(model: Model) -> NDArray[np.float64]:
     """Where particles are drawn (m), shape (n, 2): original position + displacement × scale."""
     return model.particles.position + model.particles.displacement * drawn_scale(model)
+
+
+def drawn_at(model: Model, particle: Particle) -> Vector:
+    """Where a particle is drawn (m)."""
+    x, y = drawn_positions(model)[particle.row].tolist()
+    return x, y
 
 
 def drawn_places(model: Model) -> NDArray[np.float64]:
