@@ -351,8 +351,7 @@ class World:
         if derivation is None or (known := self._derived_at[derivation]) == self.revision:
             return
         roots = self._roots_of(derivation)
-        shown = self._shown_since if Role.STATE in roots else 0
-        if max(self.newest(*roots), self.structure, shown) > known:
+        if max(self.newest(*roots), self.structure, self._shown_since * (Role.STATE in roots)) > known:
             new_rows = (self.tables[target.split(".")[0]].structure for target in derivation.targets)
             sources = map(self.version, derivation.sources)
             if any(changed > known for changed in itertools.chain(sources, new_rows)):

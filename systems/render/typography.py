@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections import defaultdict
 from collections.abc import Iterable
 from functools import cache, lru_cache
 from importlib.resources import files
@@ -34,19 +35,13 @@ def text_width(text: str, size: int, weight: str = "regular") -> int:
     return max(sum(map(wide.__getitem__, line)) for line in text.split("\n"))
 
 
-class _Widths(dict[str, int]):
+@cache
+def _widths(size: int, weight: str) -> defaultdict[str, int]:
     """The width in pixels of each character at a font size."""
-
-    def __init__(self, size: int, weight: str) -> None:
-        self._metrics, self._size = _metrics()[weight], size
-
-    def __missing__(self, character: str) -> int:
-        em = float(self._metrics["units_per_em"])
-        advance = float(self._metrics["advance"].get(character, 0.7 * em))
-        return self.setdefault(character, math.floor(advance * self._size / em + 0.5))
-
-
-_widths = cache(_Widths)
+    metrics = _metrics()[weight]
+    em = float(metrics["units_per_em"])
+    known = {one: math.floor(advance * size / em + 0.5) for one, advance in metrics["advance"].items()}
+    return defaultdict(lambda: math.floor(0.7 * em * size / em + 0.5), known)
 
 
 @cache

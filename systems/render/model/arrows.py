@@ -95,8 +95,6 @@ def steady(sheet: Sheet, key: tuple[str, int], largest: float) -> float:
 def draw_loads(sheet: Sheet) -> None:
     """The force on each particle, its loads at full size included, where no diagram shows it."""
     model = sheet.model
-    if sheet.view.all_diagrams:
-        return
     force = full_load(model)[:, :2]
     loaded = (force[:, 0] != 0.0) | (force[:, 1] != 0.0)
     loaded[sheet.tagged(DiagramShown, "particles")] = False

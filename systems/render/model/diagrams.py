@@ -231,8 +231,7 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) 
     every = inner_forces(model, np.arange(model.rods.count), quantity)
     every.polynomials[~(np.abs(every.polynomials) < _LARGEST).all(axis=1)] = 0.0
     few = every.with_kinks(np.linspace(0.0, 1.0, 5))
-    sampled = every.at(few)
-    largest = float(np.abs(sampled).max(initial=0.0))
+    largest = float(np.abs(sampled := every.at(few)).max(initial=0.0))
     if quantity == AXIAL:  # small ones, as bending shortens rods, look small
         shear = np.abs(model.rods.shear)
         largest = max(largest, _SHARE * float(shear[shear < _LARGEST].max(initial=0.0)))
@@ -308,7 +307,7 @@ def _draw_areas(sheet: Sheet, name: str, diagram: _Diagram, heights: Values, dra
         return
     rows, points, heights = diagram.rows[drawn], diagram.points[drawn], heights[drawn]
     rise = heights[..., None] * diagram.normals[drawn]
-    colour, edge, u = _colour(sheet, name), points + rise, sheet.unit
+    colour, edge, u = sheet.colour_of("ink" if name in ("moment", "shear") else name), points + rise, sheet.unit
     is_outlined, of = not diagram.is_straight or sheet.rod_length > 16.0 * u, ("rods", rows)
     if diagram.is_straight:
         area = faded(colour, 0.16 if is_outlined else 0.5)
@@ -337,10 +336,6 @@ def _draw_areas(sheet: Sheet, name: str, diagram: _Diagram, heights: Values, dra
     pieces = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2), rise.reshape(-1, 2)
     of = "rods", np.repeat(rows, points.shape[1] - 1)
     sheet.occupancy.parts.add(of, *pieces[:2], rise=pieces[2], kind=DIAGRAM)
-
-
-def _colour(sheet: Sheet, name: str) -> Colour:
-    return sheet.colour_of("ink" if name in ("moment", "shear") else name)
 
 
 def _hatch(sheet: Sheet, diagram: _Diagram, drawn: Truths, colour: Colour, name: str) -> None:
@@ -420,7 +415,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
     for k, (row, number_of, most, force) in enumerate(zip(*columns, strict=True)):
         of, key, rank = ("rods", row), (field, number_of), -most
         sign = "zero" if abs(force) <= SMALLEST else "tension" if force > 0.0 else "compression"
-        colour = _colour(sheet, sign) if quantity == AXIAL else sheet.colour_of("text")
+        colour = sheet.colour_of(sign if quantity == AXIAL else "text")
         short = texts[k] if not few else _written(sheet, quantity, force, nothing, few=False)
         write(
             sheet,

@@ -195,7 +195,7 @@ class Group(Part):
                 part.put(paper, Rectangle(left, top, width, high))
                 top += high + self.gap * u
             return
-        for part, wide in zip(self.parts, self._widths(u, width), strict=True):
+        for part, wide in zip(self.parts, self._shared(self._each(u), width, u), strict=True):
             part.put(paper, Rectangle(left, top, wide, part.height(u, wide) if self.top else height))
             left += wide + self.gap * u
 
@@ -210,13 +210,10 @@ class Group(Part):
             if width is None:
                 found = [part.width(u) for part in self.parts]
             else:
-                widths = [width] * len(self.parts) if self.down else self._widths(u, width)
+                widths = [width] * len(self.parts) if self.down else self._shared(self._each(u), width, u)
                 found = [part.height(u, wide) for part, wide in zip(self.parts, widths, strict=True)]
             known[u, width] = found
         return found
-
-    def _widths(self, u: float, room: float) -> list[float]:
-        return self._shared(self._each(u), room, u)
 
     def _shared(self, needed: list[float], room: float, u: float) -> list[float]:
         """What each part gets of the room in the direction of the group."""
