@@ -15,7 +15,7 @@ FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 MOST = {
     "lines": 72_413,
     "files": 386,
-    "names": 4_000,  # functions, classes and constants of modules
+    "names": 3_999,  # functions, classes and constants of modules
     "public names": 2_384,
     "numbers": 1_569,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
