@@ -234,7 +234,7 @@ class Field(Generic[T]):
 
     def named(self, axis: str = "") -> str:
         """What a person calls it, or its part along an axis: "velocity x"."""
-        return joined([tr(self.title), tr(axis) if axis else ""])
+        return joined([tr(self.title), tr(axis) if axis not in ("", VALUE) else ""])
 
     def _refusal(self, message: str, where: str, value: Any, axis: str = "", **more: Any) -> FieldError:
         return FieldError(message, where=where, title=self.named(axis), value=quoted(value), **more)
@@ -386,6 +386,7 @@ class Field(Generic[T]):
         return np.asarray(ok.all(axis=1)) if self.shape else ok
 
 
+VALUE = marked("value")  # the part of a quantity that is called like the whole, beside where it is
 ENDS = (marked("start"), marked("end"))  # of rods: the parts of what each end has of its own
 
 # Fields that say how a model is drawn, that time makes, and that are computed from others; of them, of the ends of rods;

@@ -13,6 +13,7 @@ from pinjoint.components.cases import permanent
 from pinjoint.components.field import (
     CM,
     ENDS,
+    VALUE,
     Column,
     Field,
     FieldError,
@@ -294,7 +295,7 @@ class Rod(Handle):
     )
     largest_moment: Field[Vector] = derived(
         "kN·m, m",
-        axes=(marked("value"), marked("distance")),
+        axes=(VALUE, marked("distance")),
         doc="The bending moment of largest size, and how far from the start.",
     )
     yielding: Field[bool] = derived(dtype=bool, doc="Its axial force has reached a strength.")

@@ -15,6 +15,7 @@ from pinjoint.components.bent import AXIAL, Parts, drawn_scale, middles
 from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends
 from pinjoint.components.slider import ARROW, CHOICES, EDGE, GAP, SUPPORT, Place, SliderStack
 from pinjoint.components.toolbar import Menu, Tool, Toolbar
@@ -293,6 +294,7 @@ class View:
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     provisional: why what is shown is no equilibrium, which makes results pale; "": it is one.
     card: a task of a lesson, in place of a model. cuts: rods that are drawn cut. has_units: values of forces tell theirs.
+    bare: loads, reactions and velocities are left out, as beside diagrams on paper.
     near_buckling: rows of rods whose compression is nearly critical: they pulse as a shape swings.
     steady: a hand moves something, so that labels stay beside what they belong to. arrow_scales: of vectors by Field, how
     much a point of an arrow is that is drawn or dragged. session: a weak reference to the context that shows it; or None.
@@ -349,6 +351,7 @@ class View:
     session: Any = None
     cuts: tuple[Cut, ...] = ()
     has_units: bool = True
+    bare: bool = False
     steady: bool = False
     arrow_scales: dict[str, float] = field(default_factory=dict)
 
@@ -516,6 +519,12 @@ class View:
 def drawn_positions(model: Model) -> NDArray[np.float64]:
     """Where particles are drawn (m), shape (n, 2): original position + displacement × scale."""
     return model.particles.position + model.particles.displacement * drawn_scale(model)
+
+
+def drawn_at(model: Model, particle: Particle) -> Vector:
+    """Where a particle is drawn (m)."""
+    x, y = drawn_positions(model)[particle.row].tolist()
+    return x, y
 
 
 def drawn_places(model: Model) -> NDArray[np.float64]:

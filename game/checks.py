@@ -31,8 +31,11 @@ from pinjoint.documents.library import data_in
 from pinjoint.editor.frame import Frame
 from pinjoint.editor.scenes import Scene, all_scenes
 from pinjoint.interrupts import is_persons
+from pinjoint.lessons.checking import check_lesson
+from pinjoint.lessons.progress import lessons_in
 from pinjoint.mods.loading import load_all
 from pinjoint.mods.mod import LOG, Mod
+from pinjoint.scripts.script import Script
 from pinjoint.session import Session
 from pinjoint.systems.base import Commit, Event, Integrator, Law, StepSystem, StopReason, System
 from pinjoint.systems.catalogue import all_systems
@@ -383,6 +386,10 @@ class Trial:
             for file in sorted(folder.glob("*.json")) if own else ():
                 with self._part():
                     models.load(file)
+        for file in lessons_in(self.mod.folder) if self.mod.folder is not None else ():
+            with self._part():
+                for failure in check_lesson(Script(file)):
+                    self._note(f"{file.name} {failure}")
 
     @contextmanager
     def _part(self) -> Iterator[None]:

@@ -16,7 +16,7 @@ from typing import Any
 
 import msgspec
 
-from pinjoint.components.field import ENDS, SAVED, Field, FieldError, Role
+from pinjoint.components.field import ENDS, SAVED, VALUE, Field, FieldError, Role
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
@@ -282,6 +282,12 @@ class Quantity:
         return joined([self.name, f"({self.unit})" if self.unit else ""])
 
 
+_PART_OF = dict.fromkeys(("", VALUE), marked("{quantity} of {element}")) | {
+    ENDS[0]: marked("{quantity} at the start of {element}"),
+    ENDS[1]: marked("{quantity} at the end of {element}"),
+}
+
+
 def quantity(model: Model, path: str) -> Quantity:
     """The quantity that a path leads to. Raises PathError."""
     if path == TIME:
@@ -302,8 +308,8 @@ def quantity(model: Model, path: str) -> Quantity:
         raise PathError("{path}: write one of {parts}.", path=path, parts=parts)
     handle, field = target.handles[0], target.field
     unit, factor = target.shown
-    told = {"quantity": tr(field.title), "axis": target.axis, "element": handle.world.describe(handle)}
-    title = marked("{quantity} {axis} of {element}") if target.axis else marked("{quantity} of {element}")
+    told = {"quantity": tr(field.title), "axis": tr(target.axis), "element": handle.world.describe(handle)}
+    title = _PART_OF.get(target.axis, marked("{quantity} {axis} of {element}"))
 
     def read(session: Any) -> float:
         if not handle.exists or handle.world is not session.model:

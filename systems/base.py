@@ -102,6 +102,7 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
     """Behaviour, run once in every frame of the scenes it is active in.
 
     name: qualified, such as "physics.elasticity"; unique.
+    title: what undo calls its edits, such as "break"; "": its name.
     before, after: names of systems in the same phase that must run later, earlier.
     reads, writes: columns ("particles.velocity") or named resources ("view") it touches. Two systems of a phase
         that touch the same thing, one writing, must be ordered by before/after.
@@ -117,6 +118,7 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
     """
 
     name: ClassVar[str] = ""
+    title: ClassVar[str] = ""
     phase: ClassVar[Phase] = Phase.EDIT
     before: ClassVar[tuple[str, ...]] = ()
     after: ClassVar[tuple[str, ...]] = ()

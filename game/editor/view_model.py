@@ -19,7 +19,7 @@ from pinjoint.components.tags import Hovered
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES
 from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from pinjoint.editor.context import Context, Waiting
-from pinjoint.editor.gestures.drawing import Drawing, DrawRod, onto_member, tool_in_hand
+from pinjoint.editor.gestures.drawing import Drawing, DrawRod, tool_in_hand
 from pinjoint.editor.gestures.moving import Placing
 from pinjoint.editor.readouts import distance_at, pinned, readouts
 from pinjoint.editor.sliders import slider_stack
@@ -27,7 +27,6 @@ from pinjoint.editor.toolbar import toolbar_of
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
-from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import is_rigid
 from pinjoint.systems.forms.results import along, told
 from pinjoint.systems.input.actions import ACTIONS, LIVE
@@ -287,28 +286,23 @@ def _hint_of_tool(context: Context) -> str:
 def _pointed_at(context: Context, pixel: Vector) -> Preview | None:
     """With a tool in hand: where a rod or a particle would begin, or what a click makes of the end under the pointer."""
     model, view = context.model, context.view
-    if view.tool in ("place", DrawRod.tool) and view.pointer is not None and not view.covers(pixel):
-        if pick_particle(model, view, pixel) is not None:
-            return None
-        at = (
-            onto_member(context, pixel)
-            if view.tool == DrawRod.tool
-            else snapped(model, view, view.camera.to_model(pixel))
-        )
-        return Preview("hinge", at, at, written.place(at, written.DIGITS))
+    if view.tool and view.pointer is not None and not view.covers(pixel):
+        at = ACTIONS[view.tool].begins(context, pixel)
+        if at is not None:
+            return Preview("hinge", at, at, written.place(at, written.DIGITS))
     if view.tool != "hinge" or pick_particle(model, view, pixel) is not None:
         return None
     found = pick_end(model, view, pixel)
     if found is None:
         return None
     rod, end = found
-    at, particle = ring_of(model, view, rod, end), rod.ends[end].said
+    ring, particle = ring_of(model, view, rod, end), rod.ends[end].said
     label = (
         tr("hinge {rod} at {particle}", rod=rod.said, particle=particle)
         if is_rigid(rod, end)
         else tr("make {rod} rigid at {particle}", rod=rod.said, particle=particle)
     )
-    return Preview("hinge", at, at, label)
+    return Preview("hinge", ring, ring, label)
 
 
 def _state_word(context: Context, *, brief: bool) -> str:

@@ -199,8 +199,7 @@ def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, s
         right = [handle for handle, _ in values if holds(truth, path.replace("*", named(handle), 1) + relation)]
     target, _ = locate(truth.model, path.strip(), readable)
     unit, factor = target.shown
-    title = tr(target.field.title)
-    title = f"{title} {target.axis}" if target.axis else title
+    title = target.field.named(target.axis)
     written_values = {
         handle: tr(
             "its {title} is {value} {unit}", title=title, value=_number(factor * value), unit=unit
@@ -243,8 +242,7 @@ def said_of(session: Session, path: str) -> tuple[str, float, str]:
         if word in OVER_ALL and of_all:
             target, _ = locate(session.model, of_all.strip(), readable)
             unit, factor = target.shown
-            axis = f" {target.axis}" if target.axis else ""
-            return unit, factor, tr(_OVER_ALL[word], what=f"{tr(target.field.title)}{axis}")
+            return unit, factor, tr(_OVER_ALL[word], what=target.field.named(target.axis))
         found = quantity(session.model, path)
     except PathError:
         return "", 1.0, tr(_NAMES[path]) if path in _NAMES else path
@@ -254,6 +252,7 @@ def said_of(session: Session, path: str) -> tuple[str, float, str]:
 def question(session: Session, path: str) -> str:
     """What the number at a path is, and its unit."""
     unit, _, name = said_of(session, path)
+    name = name.removesuffix(",")  # of "whatever its sign,"
     return tr("Asked: {what}.", what=f"{name} ({unit})" if unit else name)
 
 

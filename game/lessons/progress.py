@@ -7,6 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.documents import preferences
 from pinjoint.documents.library import data_folder
 from pinjoint.scripts.script import TO_DO, Script, ScriptError, lessons
@@ -71,13 +72,20 @@ def keep(lesson: str, task: int, score: float | None = None) -> None:
 
 
 def shelf() -> list[Script]:
-    """Ours, then the person's own; what cannot be read is left out, and says why when it is opened."""
+    """Ours, those of mods, then the person's own; what cannot be read is left out, and says why when it is opened."""
     found = [Script(name) for name in lessons(TO_DO)]
-    with suppress(OSError):  # of the folder
-        for path in sorted((data_folder() / "lessons").glob("[!.]*.jsonl")):
-            with suppress(ScriptError):
-                found += [script] if (script := Script(path)).task_count else []
+    of_mods = [mod.folder for mod in EXTENSIONS.mods if mod.folder and mod.loaded and not mod.off]
+    for path in (path for folder in (*of_mods, data_folder()) for path in lessons_in(folder)):
+        with suppress(ScriptError):
+            found += [script] if (script := Script(path)).task_count else []
     return found
+
+
+def lessons_in(folder: Path) -> list[Path]:
+    """The files of lessons that a mod's folder, or that of a person's data, has."""
+    with suppress(OSError):
+        return sorted((folder / "lessons").glob("[!.]*.jsonl"))
+    return []
 
 
 def is_done(script: Script) -> bool:

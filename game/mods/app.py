@@ -189,6 +189,7 @@ class App:
                 name,
                 act,
                 while_drawing=True,
+                begins=lambda context, pixel: drawing().place(context, pixel),
                 draws=(lambda context, pixel: drawing().begin(context, pixel)) if kind.points[1:] else None,
                 hint=hint,
             )

@@ -124,7 +124,7 @@ class Guard:
         before = Snapshot.take(model, *tables) if tables else None
 
         def changed() -> bool:
-            with model.transaction(system.name, of_mod=True):
+            with model.transaction(system.title or system.name, of_mod=True):
                 if self.mod.included:
                     change()
                 else:

@@ -9,15 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.table import Table
-from pinjoint.components.view import View, drawn_positions
+from pinjoint.components.view import View, drawn_at, drawn_positions
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_point
+from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_particle, pick_point
 
 SNAP_REACH = 5.0  # points from a grid line
 SAME = 1e-9  # m between places that are one
@@ -42,8 +43,14 @@ def snapped(model: Model, view: View, point: Vector, start: Vector = (math.inf, 
     return found[0], found[1]
 
 
-def snapped_to_points(model: Model, view: View, pixel: Vector, besides: Handle | None = None) -> Vector:
-    """The point (m) under a pixel: that of another element, within reach, else on the grid if near it."""
+def snapped_to_points(
+    model: Model, view: View, pixel: Vector, kind: type[Handle], besides: Handle | None = None
+) -> Vector:
+    """The point (m) under a pixel for an element of a mod's kind: a particle, unless they collide with that kind, else a
+    point of another such element, within reach, else on the grid if near it."""
+    particle = None if kind in EXTENSIONS.obstacles else pick_particle(model, view, pixel)
+    if particle is not None:
+        return drawn_at(model, particle)
     grip = pick_point(model, view, pixel, besides)
     return snapped(model, view, view.camera.to_model(pixel)) if grip is None else grip.place
 

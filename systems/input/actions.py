@@ -66,7 +66,7 @@ class Action:
     repeats: while its key is held. while_drawing: it belongs to a gesture or only looks; all others end the gesture first.
     in_menu: it keeps an open menu open. enabled: whether it would do something now. pressed: whether what it shows is on.
     pressed_as: icon and title of its button while it is on; "": as ever. draws: of tools, begins the gesture.
-    hint: the status line while clicks use it as a tool.
+    begins: of tools, where it would begin (m), which a ring marks. hint: the status line while clicks use it as a tool.
     """
 
     name: str
@@ -80,6 +80,7 @@ class Action:
     pressed: Condition = lambda context: False
     pressed_as: Callable[[Any], tuple[str, str]] = lambda context: ("", "")
     draws: Callable[[Any, Vector], Any] | None = None
+    begins: Callable[[Any, Vector], Vector | None] = lambda context, pixel: None
     hint: str = ""
 
 

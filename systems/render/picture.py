@@ -156,6 +156,8 @@ def _draw_structure(sheet: Sheet) -> None:
 
 def _draw_arrows(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     """Loads, velocities and reactions, beside supports on these sides of particles."""
+    if sheet.view.bare:
+        return
     if sheet.view.enveloped is not None:
         draw_enveloped_reactions(sheet, sheet.view.enveloped)
         return

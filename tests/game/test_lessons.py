@@ -17,6 +17,7 @@ from pinjoint.editor.scenes.form import FormScene
 from pinjoint.lessons import progress
 from pinjoint.lessons.checking import check_lesson
 from pinjoint.lessons.course import Course, take_up_lesson
+from pinjoint.lessons.judging import question
 from pinjoint.lessons.tasks import Lesson
 from pinjoint.scripts.lines import perform
 from pinjoint.scripts.script import TO_DO, Script, ScriptError, lessons
@@ -531,6 +532,21 @@ def test_a_number_without_a_unit_is_asked_for_as_such(session: Session) -> None:
     session.type("61.7 kN")
     session.press("return")
     assert course.said == "Type a number without a unit. Asked: The lowest buckling load factor."
+
+
+@pytest.mark.parametrize(
+    ("path", "said", "translated"),
+    [
+        ("rods.AB.bending_moment.end", "Bending moment at the end of rod AB", "Momento fletor no fim da barra AB"),
+        ("rods.BC.largest_moment.value", "Largest moment of rod BC", "Maior momento da barra BC"),
+    ],
+)  # fmt: skip
+def test_what_is_asked_is_named_as_a_person_would(path: str, said: str, translated: str) -> None:
+    session = Session.open("portal")
+    assert question(session, path) == f"Asked: {said} (kN·m)."
+    assert question(session, "largest rods.*.shear") == "Asked: The largest shear, whatever its sign (kN)."
+    with spoken("pt"):
+        assert question(session, path) == f"Pedido: {translated} (kN·m)."
 
 
 def test_the_box_that_a_lesson_speaks_of_is_in_sight_at_once(session: Session) -> None:

@@ -14,6 +14,7 @@ from pinjoint.components import Environment, World
 from pinjoint.components.camera import Viewport
 from pinjoint.components.commands import Command
 from pinjoint.documents import models
+from pinjoint.lessons import progress
 from pinjoint.mods.declared import check
 from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.picture import compose
@@ -53,6 +54,32 @@ def test_models_of_a_mod_are_opened_by_name(tmp_path: Path, write_mod: Write) ->
     assert Session.open("apple_truss").rods.count == 2
     mods.unload(mods.MODS[-1:])
     assert "apple_truss" not in models.bundled()
+
+
+TASK = """{{"task": "Hang a weight on B.", "model": "truss", "until": "particles.B.force.y < 0", "right": "It hangs.",
+"solution": [{{"set": "particles.B.force=0,{load}"}}]}}""".replace("\n", " ")
+
+
+@pytest.mark.parametrize(("load", "rc"), [(-5, 0), (5, 1)])
+def test_a_mod_brings_lessons_in_its_folder(
+    load: int, rc: int, write_mod: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = write_mod("apple")
+    (folder / "lessons").mkdir()
+    models.save(models.load(TRUSS), folder / "lessons" / "truss")
+    lines = '{"format": "pinjoint session", "version": 1, "title": "Weights"}', TASK.format(load=load)
+    (folder / "lessons" / "weights.jsonl").write_text("\n".join(lines), encoding="utf-8")
+    assert main(["mods", "check", str(folder)]) == rc
+    assert ("weights.jsonl line 2" in capsys.readouterr().out) == bool(rc)
+    session = Session.open(TRUSS, mods=[folder])
+    session.press("d")
+    assert "Weights" in [tile.title for tile in session.scenes.active.form.tiles]  # type: ignore[attr-defined]
+    session.type("weights")
+    session.press("return")
+    assert session.course is not None
+    assert session.course.task.text == "Hang a weight on B."
+    mods.unload(mods.MODS[-1:])
+    assert "weights" not in [script.name for script in progress.shelf()]
 
 
 def test_a_command_gets_its_words_and_a_failing_one_ends_with_a_reason(
@@ -386,6 +413,42 @@ def test_a_tool_draws_as_many_points_as_its_kind_has(write_mod: Write) -> None:
     assert session.table("flags")[0].foot == (0.5, 0.5)
 
 
+def marked(session: Session, x: float, y: float) -> tuple[float, float] | None:
+    """Where a ring marks that the tool in hand would begin, near a point."""
+    pixel = session.point(x, y)
+    session.view.pointer = pixel[0] + 3.0, pixel[1] - 3.0
+    session.update_view()
+    return session.view.preview and session.view.preview.start
+
+
+def test_tools_of_mods_snap_to_particles_and_mark_it(write_mod: Write) -> None:
+    session = opened(write_mod, TOOLS, SPAN)
+    x, y = session.particles["B"].position = 1.234, 0.567
+    session.act("apple.arch", (5.0, 5.0))  # taken in hand
+    assert marked(session, x, y) == (x, y)
+    assert marked(session, 0.5, 1.0) == (0.5, 1.0)
+    near = x + 3.0 / session.view.camera.scale, y
+    session.drag((-1.0, -1.0), near)
+    session.click(2.0, 2.0)
+    [arch] = session.table("arches")
+    assert (arch.left, arch.top) == ((-1.0, -1.0), (x, y))
+    session.press("escape")
+    session.act("apple.flag", (5.0, 5.0))
+    assert marked(session, x, y) == (x, y)
+    session.click(*near)
+    assert session.table("flags")[0].foot == (x, y)
+    session.click(-1.0, -1.5)
+    session.press("escape")
+    session.drag((-1.0, -1.5), near)
+    assert session.table("flags")[1].foot == (x, y)
+
+
+def test_what_particles_collide_with_is_drawn_beside_them() -> None:
+    session = Session.open(model([particle("ball", 0.25, 0.25, radius=0.2)], []))
+    session.act("walls.wall", (5.0, 5.0))
+    assert marked(session, 0.25, 0.15) not in (None, (0.25, 0.25))
+
+
 @pytest.mark.parametrize(
     ("title", "code", "said"),
     [
@@ -409,6 +472,26 @@ def test_undo_tells_the_title_of_an_action_or_of_the_transaction_in_it(
     assert session.notice == f"Undone: {said}"
     session.press("ctrl+y")
     assert session.notice == f"Redone: {said}"
+
+
+BREAK = """
+from pinjoint.api import *
+class Break(System):
+    name, title, phase = "apple.snap", {title!r}, Phase.EVENTS
+    def process(self, frame):
+        if frame.session.time > 0 and frame.session.rods.count == 2:
+            frame.session.model.delete([frame.session.rods[0]])
+"""
+
+
+@pytest.mark.parametrize(("title", "said"), [("", "apple.snap"), ("break", "break")])
+def test_undo_tells_the_title_of_a_system(title: str, said: str, write_mod: Write) -> None:
+    session = opened(write_mod, "app.system(Break)", BREAK.format(title=title))
+    session.run(time=0.01)
+    assert session.rods.count == 1
+    session.press("ctrl+z")  # what ran after it
+    session.press("ctrl+z")
+    assert session.notice == f"Undone: {said}"
 
 
 PLAY = """

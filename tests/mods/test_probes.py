@@ -210,7 +210,9 @@ def test_members_offer_their_moments_and_joints_their_rotation() -> None:
     session.document.get_ready()
     session.select(session.rods["BC"])
     session.press("o")
-    assert [read.title for read in probes_of(session).all[0].read] == ["bending moment start of rod BC (kN·m)"]
+    assert [read.title for read in probes_of(session).all[0].read] == [
+        "bending moment at the start of rod BC (kN·m)"
+    ]
     assert probes_of(session).all[0].table[-1, 2] == pytest.approx(1.359, rel=1e-3)
     session.select(session.particles["B"])
     for _ in range(5):

@@ -19,6 +19,7 @@ from pinjoint.editor.gestures.drawing import (
     DrawRod,
     DrawSpanLoad,
     DrawVelocity,
+    onto_member,
     take_up,
     tool_in_hand,
 )
@@ -33,11 +34,19 @@ from pinjoint.systems.input.actions import actions_of
 action = actions_of("Draw")
 
 
+def _free(context: Context, pixel: Vector) -> Vector | None:
+    """The point (m) under a pixel, on the grid if near it; None on a particle."""
+    model, view = context.model, context.view
+    taken = pick_particle(model, view, pixel) is not None
+    return None if taken else snapped(model, view, view.camera.to_model(pixel))
+
+
 @action(
     "place",
     "p",
     "draw a particle",
     while_drawing=True,
+    begins=_free,
     hint=marked("click where you want particles     Esc done"),
 )
 def _place(context: Context, pixel: Vector) -> None:
@@ -51,9 +60,14 @@ def _place(context: Context, pixel: Vector) -> None:
 
 
 # The status line names the kind of rods, too.
-action("rod", "l", "draw a rod between two particles", while_drawing=True, draws=DrawRod.begin_anywhere)(
-    DrawRod.use
-)
+action(
+    "rod",
+    "l",
+    "draw a rod between two particles",
+    while_drawing=True,
+    draws=DrawRod.begin_anywhere,
+    begins=lambda context, pixel: _free(context, pixel) and onto_member(context, pixel),
+)(DrawRod.use)
 
 
 def _are_rigid(context: Context) -> bool:

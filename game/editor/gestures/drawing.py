@@ -19,7 +19,7 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends, rigid_joints
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.tags import Selected
-from pinjoint.components.view import BETWEEN, COVERED, Preview, drawn_positions
+from pinjoint.components.view import BETWEEN, COVERED, Preview, drawn_at, drawn_positions
 from pinjoint.editor.context import Context, Gesture, tell
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.arrows import arrow_end, arrow_scale, arrow_value
@@ -76,7 +76,7 @@ class Drawing(Gesture):
             return self.origin
         if not self.origin.exists:
             raise Refusal("The particle where this began has been deleted; begin at another one.")
-        return _drawn_at(context, self.origin)
+        return drawn_at(context.model, self.origin)
 
     @property
     def unit(self) -> tuple[str, str]:
@@ -185,7 +185,7 @@ class DrawRod(Drawing):
         if not context.view.joins:
             return []
         start = self.start(context)
-        last = _drawn_at(context, end) if isinstance(end, Particle) else end
+        last = drawn_at(context.model, end) if isinstance(end, Particle) else end
         farthest = math.dist(start, last) + SAME * (-1.0 if isinstance(end, Particle) else 1.0)
         nearest = SAME * (1.0 if isinstance(self.origin, Particle) else -1.0)
         return [met for met in members_met(context.model, start, last, SAME) if nearest < met[0] < farthest]
@@ -221,7 +221,7 @@ class DrawRod(Drawing):
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         start, other = self.start(context), self._ending(context, pixel)
         if not isinstance(other, Particle) or other is self.origin or not isinstance(self.origin, Particle):
-            end = _drawn_at(context, other) if isinstance(other, Particle) else other
+            end = drawn_at(context.model, other) if isinstance(other, Particle) else other
             return Preview(
                 "rod", start, end, _length_and_angle(start, end), joints=self._joints(context, other)
             )
@@ -230,7 +230,7 @@ class DrawRod(Drawing):
             label = written.length(distance(self.origin, other), written.DIGITS)
         except Refusal:
             label = tr("joined already")
-        return Preview("rod", start, _drawn_at(context, other), label, joints=self._joints(context, other))
+        return Preview("rod", start, drawn_at(context.model, other), label, joints=self._joints(context, other))
 
     def _joints(self, context: Context, end: Particle | Vector) -> tuple[Vector, ...]:
         return tuple(place_at(rod, share) for _, rod, share in self._met(context, end))
@@ -486,7 +486,12 @@ class DrawElement(Drawing):
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
         if context.view.strip.contains(pixel):
             return None
-        return cls(context, snapped_to_points(context.model, context.view, pixel))
+        return cls(context, cls.place(context, pixel))
+
+    @classmethod
+    def place(cls, context: Context, pixel: Vector) -> Vector:
+        """The point (m) that a click at a pixel gives."""
+        return snapped_to_points(context.model, context.view, pixel, cls.kind)
 
     @classmethod
     def use(cls, context: Context, pixel: Vector) -> None:
@@ -496,7 +501,7 @@ class DrawElement(Drawing):
         elif context.view.strip.contains(pixel):
             take_up(context, cls.tool)
         else:
-            point = snapped_to_points(context.model, context.view, pixel)
+            point = cls.place(context, pixel)
             cls._make(context, [point], written.place(point, written.DIGITS))
 
     @classmethod
@@ -530,7 +535,7 @@ class DrawElement(Drawing):
         return Preview("rod", start, end, _length_and_angle(start, end), before=tuple(self.placed))
 
     def _ending(self, context: Context, pixel: Vector) -> Vector:
-        return self.end_typed(context, snapped_to_points(context.model, context.view, pixel))
+        return self.end_typed(context, self.place(context, pixel))
 
 
 class TypePoint(Drawing):
@@ -588,12 +593,6 @@ def onto_member(context: Context, pixel: Vector, start: Vector = (math.inf, math
     point = snapped(model, view, view.camera.to_model(pixel), start)
     rod = pick_rod(model, view, pixel) if view.joins and not view.covers(pixel) else None
     return point if rod is None or not rod.bending_stiffness else place_at(rod, share_at(rod, point))
-
-
-def _drawn_at(context: Context, particle: Particle) -> Vector:
-    """Where a particle is drawn (m)."""
-    x, y = drawn_positions(context.model)[particle.row].tolist()
-    return x, y
 
 
 class DrawSupport(Drawing):

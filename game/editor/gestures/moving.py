@@ -100,7 +100,7 @@ class MovePoint(Placing):
 
     def place(self, context: Context, pixel: Vector) -> str:
         element, point = self._held.element, self._held.point
-        target = snapped_to_points(context.model, context.view, pixel, besides=element)
+        target = snapped_to_points(context.model, context.view, pixel, type(element), besides=element)
         context.model.assign([element], point, [target])
         named = tr(context.model.tables[element.table].fields[point].title)
         return tr(
