@@ -237,7 +237,9 @@ class _Search:
         found = None
         for sign in (1.0, -1.0):
             ways = external.at(0.0), sign * external.scaled, (0.0, sign)
-            path = Path(structure, *ways, passes_limits=not structure.first_order)  # first order: up to collapse
+            path = Path(
+                structure, *ways, passes_limits=not structure.first_order
+            )  # first order: up to collapse
             path.end = math.inf
             place = structure.field(unloaded.displacement, unloaded.rotation)
             start = path.start(place, unloaded.permanent)

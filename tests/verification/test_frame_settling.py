@@ -306,6 +306,9 @@ def test_a_loose_bar_is_as_neutral_beside_a_beam_as_alone(theory: str, top: tupl
     """Its turning takes no energy at all, beside which there is none to compare with if it lies along x or y."""
     document = model([particle("C", 5, 0, fixed=[True, True]), particle("D", *top)], [rod("C", "D")])
     assert settle(parse(document), theory=theory).status == "neutral equilibrium"
-    document["particles"] += [particle("E", 9, 0, fixed=[True, True], fixed_rotation=True), particle("F", 11, 0)]
+    document["particles"] += [
+        particle("E", 9, 0, fixed=[True, True], fixed_rotation=True),
+        particle("F", 11, 0),
+    ]
     document["rods"].append(rod("E", "F", bending_stiffness=100.0))
     assert settle(parse(document), theory=theory).status == "neutral equilibrium"
