@@ -282,19 +282,13 @@ class Loading:
             raise self._lost(found)
         elif not (found.plastic_strain != start.plastic_strain).any():
             way, slack = found.displacement - start.displacement, found.response.slack
-            buckled = self._buckled(slack)
+            buckled = self.path.structure.buckled(slack)
             raise self._collapse(buckled, way) if buckled.any() else self._mechanism(way, slack)
         elif plastic is not None and nudge is not None:
-            raise self._collapse(
-                plastic.flowing | self._buckled(plastic.slack), self.path.structure.spread(nudge)
-            )
+            buckled = self.path.structure.buckled(plastic.slack)
+            raise self._collapse(plastic.flowing | buckled, self.path.structure.spread(nudge))
         else:
             raise self._collapse(found.response.flowing, found.displacement - start.displacement)
-
-    def _buckled(self, slack: Flags) -> Flags:
-        """Of what is slack, struts, (rods,) or with both ends (rods, 3)."""
-        found: Flags = (slack.T & self.path.structure.struts).T
-        return found
 
     def _note_jump(self, beyond: Tangent, critical: Point, mode: Array) -> None:
         push = self.path.push(critical.response)
