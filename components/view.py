@@ -240,6 +240,18 @@ class Shape:
 
 
 @dataclass(frozen=True)
+class Trails:
+    """Where what is selected was drawn in the run so far.
+
+    of: the particles, and the scale of displacements. time: of the last moment (s). places: (moments, particles, 2), m.
+    """
+
+    of: tuple[object, ...] = ()
+    time: float = 0.0
+    places: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 2)), compare=False, repr=False)
+
+
+@dataclass(frozen=True)
 class Hit(Rectangle):
     """Where a press does something.
 
@@ -294,6 +306,9 @@ class View:
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     provisional: why what is shown is no equilibrium, which makes results pale; "": it is one.
     card: a task of a lesson, in place of a model. cuts: rods that are drawn cut. has_units: values of forces tell theirs.
+    trails: where what is selected was. followed: the particle that the view goes with, and where it was drawn (m); or None.
+    sound: what happens is heard, in a window.
+    bare: loads, reactions and velocities are left out, as beside diagrams on paper.
     near_buckling: rows of rods whose compression is nearly critical: they pulse as a shape swings.
     steady: a hand moves something, so that labels stay beside what they belong to. arrow_scales: of vectors by Field, how
     much a point of an arrow is that is drawn or dragged. session: a weak reference to the context that shows it; or None.
@@ -350,7 +365,11 @@ class View:
     session: Any = None
     cuts: tuple[Cut, ...] = ()
     has_units: bool = True
+    bare: bool = False
     steady: bool = False
+    trails: Trails = field(default_factory=Trails)
+    followed: tuple[Particle, Vector] | None = None
+    sound: bool = False
     arrow_scales: dict[str, float] = field(default_factory=dict)
 
     @property

@@ -14,7 +14,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from pinjoint.components.field import CM, MOVED, SCREEN, on_screen
-from pinjoint.components.language import decimals, english, joined, several, tr
+from pinjoint.components.language import decimals, english, joined, marked, several, tr
 
 DIGITS = 4  # significant ones of a result
 _GIVEN_DIGITS = 6  # of a number that a person set, without zeros at its end
@@ -183,11 +183,12 @@ def time(seconds: float, digits: int = DIGITS) -> str:
 
 
 def pace(speed: float) -> str:
-    """How fast the simulation is shown, such as "1 s shown = 0.35 ms simulated"; "" when halted."""
+    """How fast the simulation is shown, such as "slow motion: 1 s shown = 0.35 ms"; "" when halted."""
     if speed == 0.0:
         return ""
     if abs(speed - 1.0) < 0.005:
         return tr("real time")
     shown, unit = english(time(speed, 3)).split(" ")
     shown = shown.rstrip("0").rstrip(".") if "." in shown else shown
-    return tr("1 s shown = {time} simulated", time=decimals(f"{shown} {unit}"))
+    said = marked("slow motion: 1 s shown = {time}") if speed < 1.0 else marked("1 s shown = {time} simulated")
+    return tr(said, time=decimals(f"{shown} {unit}"))

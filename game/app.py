@@ -47,6 +47,7 @@ from pinjoint.systems.render.backends.pygame_canvas import encoded
 from pinjoint.systems.render.backends.raster import load_raster
 from pinjoint.systems.render.picture import symbol_at
 from pinjoint.systems.render.pygame_render import PygameRender
+from pinjoint.systems.render.pygame_sound import PygameSound
 
 FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points
@@ -112,6 +113,7 @@ def window_systems(folder: Path) -> list[System]:
         Autosave(folder),
         Preparation(),
         PygameRender(pygame.Surface((1, 1))),
+        PygameSound(),
     ]
 
 
@@ -182,8 +184,9 @@ class App:
         raster = preparation.raster if preparation else load_raster
         self.render = PygameRender(self.window.get_surface(), raster)
         further = [system for system in (autosave, preparation) if system is not None]
-        systems: list[System] = [self.input, Hover(symbol_at), *further, self.render]
-        self.session = Session(model, systems, View(theme=theme, convention=preferred("convention")), file)
+        systems: list[System] = [self.input, Hover(symbol_at), *further, self.render, PygameSound()]
+        view = View(theme=theme, convention=preferred("convention"), sound=preferred("sound"))
+        self.session = Session(model, systems, view, file)
         self.session.window = self
         self.session.faults_seen = 0  # so that mods that were left out are shown
         self.session.autosave = self.autosave = autosave
@@ -343,14 +346,14 @@ class App:
         elif gc.get_count()[0] > MANY_NEW:
             gc.collect(0)
 
-    def _choices(self) -> dict[str, str]:
+    def _choices(self) -> dict[str, str | bool]:
         """What the person has chosen; not what a script that is performed shows."""
-        view, shown = self.session.view, dict[str, str]()
+        view, shown = self.session.view, dict[str, str | bool]()
         if self.session.footer is None:
             shown = {"language": language(), "convention": view.convention}
         if self.session.footer is None and self.session.course is None and self.session.scene in LIVE:
             shown["units"] = units_on_screen()
-        return {"theme": view.theme, **shown}
+        return {"theme": view.theme, "sound": view.sound, **shown}
 
     def _follow_choices(self) -> None:
         """Keep what the person chooses for the next time."""

@@ -19,7 +19,8 @@ from pinjoint.components.view import Cut, Shape, View
 from pinjoint.methods.guide import scale_to
 from pinjoint.systems.render.backends.paper import GUTTER, PIXEL, ROOMS, WIDTH, Block, Figure, Layout
 from pinjoint.systems.render.marks import Mark, Strokes, Text
-from pinjoint.systems.render.model.arrows import largest_force
+from pinjoint.systems.render.model.arrows import full_load, largest_force
+from pinjoint.systems.render.model.diagrams import diagram_room
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import Theme, load_theme
 from pinjoint.systems.render.typography import text_width
@@ -34,7 +35,8 @@ _DIAGRAM = 30.0  # pixels of the largest axial force
 _SPARE = 70.0  # pixels more below a structure and half as many above it, where values need them
 _PART = 0.42  # of the height of a page, that of figures made larger
 _RIGHT, _UNDER = 44.0, 24.0  # pixels for dimensions on the right and below
-_LOADS = 16.0  # pixels less beside and more above a structure that has loads only
+_REACTIONS = 44.0  # pixels more above and below a structure with loads and reactions
+_TALL = 40.0  # pixels of the largest value in diagrams without these
 _CAPTION = 28.0  # points of a page for the caption of its figure
 _NUMBERED = 3  # values for which numbers may stand before a figure is made larger
 _ROWS = 120  # of a table that are printed
@@ -82,6 +84,7 @@ def figure(
     diagrams: str | None = None,
     cuts: Sequence[Cut] = (),
     has_units: bool = True,
+    bare: bool = False,
     row: int = 0,
     unit: float = 1.0,
     measured: bool = False,
@@ -92,60 +95,71 @@ def figure(
 ) -> Block:
     """A picture of a model, with the diagrams of a quantity or their envelope, and a shape over it.
 
-    row: how many figures stand in a row; 0: by its shape. unit: pixels per point of its texts. measured: with its
-    dimensions and all names. moved: so that displacements are well seen, by which factor the caption says; else undeformed.
-    grows: until every value is told, up to a page of its own, on its side if the structure is wider than high.
+    row: how many figures stand in a row; 0: by its shape. unit: pixels per point of its texts. bare: without loads and
+    reactions. measured: with its dimensions, all names and reactions. moved: so that displacements are well seen, by which
+    factor the caption says; else undeformed. grows: until every value is told, up to a page of its own, on its side if the
+    structure is wider than high.
     """
     model.delete(list(model.grids))
-    wide, high = shape(model)
     row = row or in_a_row(layout, model)
     rooms = [((WIDTH - (row - 1) * GUTTER) / row, layout.figure * unit, 0.0)]
     if grows:
+        wide, high = shape(model)
         across, tall = ROOMS[wide > high]
         rooms += [(WIDTH, _PART * ROOMS[0][1], _SPARE), (across, tall - _CAPTION, 2.0 * _SPARE)]
     view = View(legend=False, has_scale=False, all_diagrams=diagrams is not None, quantity=diagrams or AXIAL)
     view.names, view.shape, view.enveloped = measured, over, enveloped
-    view.cuts, view.has_units, view.pixel_ratio = tuple(cuts), has_units, unit
-    pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
-    model.settings.diagram_scale = scale_to(_DIAGRAM, pulled)
+    view.cuts, view.has_units, view.bare, view.pixel_ratio = tuple(cuts), has_units, bare, unit
+    frame = is_frame(model)
+    model.settings.diagram_scale = scale_to(_DIAGRAM, 0.0 if frame else largest(model.rods.axial_force))
     model.settings.displacement_scale, model.settings.original_diagrams = 0.0, not moved
-    loaded_ones = [p for p in model.particles if any(p.force) or p.moment] + [
-        one.particle for one in model.loads
-    ]
-    model.tag_only(loaded_ones, DiagramShown)
+    loaded = full_load(model).any(axis=1) | measured
+    model.tag_only([model.particles[row] for row in np.flatnonzero(loaded).tolist()], DiagramShown)
     theme = replace(load_theme("light"), background=(255, 255, 255, 255))
-    beside = unit * (_BESIDE_IT + _MOMENTS * is_frame(model) - _LOADS * measured)
-    right, under = (unit * _RIGHT, unit * _UNDER) if measured else (0.0, 0.0)
     found, said = list[Figure](), caption
-    for across, tall, spare in rooms:
-        above = unit * (_ABOVE + _LOADS * measured + 0.5 * spare)
-        width, below = across / PIXEL - right, unit * (_BELOW + spare)
-        room = width - 2.0 * beside
-        height = min(room * high / wide + above + below, tall / PIXEL - under)
-        if spare:
-            width = min(width, (height - above - below) * wide / high + 2.0 * (beside + unit * spare))
-            room = width - 2.0 * beside
-        view.camera = Camera(viewport=Viewport(0, 0, int(width), int(height)))
-        inner = Viewport(int(beside), int(above), int(room), int(height - above - below))
-        view.camera.fit(model.particles.position, 0.0, inner, 1.0)
+    for room in rooms:
+        view.camera = _camera(model, unit, *room, measured=measured)
+        if bare and frame:
+            model.settings.diagram_scale = max(_TALL * unit / diagram_room(view.camera.viewport, unit), 1.0)
         view.largest_force = _SHORTER * largest_force(model, view)
         if moved:
-            bending = np.flatnonzero(model.rods.bending_stiffness > 0.0)
-            bows = extremes(deflections(model, bending).stretches)[0]
-            most = max(float(np.hypot(*model.particles.displacement.T).max(initial=0.0)), largest(bows))
-            model.settings.displacement_scale = scale_to(_DIAGRAM * unit / view.camera.scale, most)
-            scale = written.given(model.settings.displacement_scale)
-            said = joined([caption, tr("displacements × {scale}", scale=scale)], ", ")
+            scale = model.settings.displacement_scale = _well_seen(model, view)
+            said = joined([caption, tr("displacements × {scale}", scale=written.given(scale))], ", ")
         picture = compose(model, view, theme)
         if measured:
             picture.marks.extend(_dimensions(model, view, theme))
-            whole = Viewport(0, 0, int(width + right), int(height + under))
-            picture = replace(picture, viewport=whole)
+            wide, high = picture.viewport.width + unit * _RIGHT, picture.viewport.height + unit * _UNDER
+            picture = replace(picture, viewport=Viewport(0, 0, int(wide), int(high)))
         found.append(Figure(picture, layout.text(said, "caption")))
         if picture.untold <= (0, _NUMBERED):
             break
     made = min(found, key=lambda figure: figure.picture.untold)
     return made.width, [made]
+
+
+def _camera(model: Model, unit: float, across: float, tall: float, spare: float, *, measured: bool) -> Camera:
+    """Where a structure stands in a room of so many points across, and tall at most, with spare pixels around it."""
+    wide, high = shape(model)
+    right, under = (unit * _RIGHT, unit * _UNDER) if measured else (0.0, 0.0)
+    beside = unit * (_BESIDE_IT + _MOMENTS * is_frame(model))
+    above = unit * (_ABOVE + _REACTIONS * measured + 0.5 * spare)
+    below = unit * (_BELOW + 0.5 * _REACTIONS * measured + spare)
+    width = across / PIXEL - right
+    height = min((width - 2.0 * beside) * high / wide + above + below, tall / PIXEL - under)
+    if spare:
+        width = min(width, (height - above - below) * wide / high + 2.0 * (beside + unit * spare))
+    camera = Camera(viewport=Viewport(0, 0, int(width), int(height)))
+    inner = Viewport(int(beside), int(above), int(width - 2.0 * beside), int(height - above - below))
+    camera.fit(model.particles.position, 0.0, inner, 1.0)
+    return camera
+
+
+def _well_seen(model: Model, view: View) -> float:
+    """By how much displacements are enlarged so that they are well seen."""
+    bending = np.flatnonzero(model.rods.bending_stiffness > 0.0)
+    bows = extremes(deflections(model, bending).stretches)[0]
+    most = max(float(np.hypot(*model.particles.displacement.T).max(initial=0.0)), largest(bows))
+    return scale_to(_DIAGRAM * view.pixel_ratio / view.camera.scale, most)
 
 
 def _dimensions(model: Model, view: View, theme: Theme) -> Iterator[Mark]:

@@ -29,7 +29,7 @@ from pinjoint.editor.routing import BUTTONS, Press
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
 from pinjoint.editor.sliders import sliders_of
-from pinjoint.editor.view_model import exaggerate, offer_tools, show
+from pinjoint.editor.view_model import exaggerate, follow, offer_tools, show
 from pinjoint.headless import Headless, forward
 from pinjoint.lessons.course import Course, take_up_lesson
 from pinjoint.mods.mod import blamed_on_mod, check_mods, switched_off
@@ -143,6 +143,7 @@ class Session(Headless):
         if not action.in_menu:
             self.view.menu = None
         exaggerate(self)
+        follow(self)
         gesture = self.gesture
         try:
             action.perform(self, pixel if pixel is not None else self.view.pixel)

@@ -95,14 +95,14 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
     if not model.first_order:
         theory = tr("Statics in exact geometry: equilibrium of the deformed shape.")
     told = acting(model)
-    figures = [draw(tr("Dimensions (m), supports and loads"), measured=True)]
+    figures = [draw(tr("Dimensions (m), supports, loads and reactions"), measured=True)]
     for quantity, title in diagram_titles().items():
         if bends(model) or quantity == AXIAL:
-            figures.append(draw(title, diagrams=quantity))
-    figures.append(draw(tr("Deflected shape"), moved=True))
+            figures.append(draw(title, diagrams=quantity, bare=True))
+    figures.append(draw(tr("Deflected shape"), moved=True, bare=True))
     known = {over.title for over in solved.collapse}
     for over in (*solved.collapse, *(over for over in shapes if over.title not in known)):
-        figures.append(draw(over.title, over=replace(over, title="") if over.swings else over))
+        figures.append(draw(over.title, bare=True, over=replace(over, title="") if over.swings else over))
     if (envelope := solved.envelope) is not None:
         for quantity, title in diagram_titles().items():
             if bends(model) or quantity == AXIAL:

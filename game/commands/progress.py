@@ -46,7 +46,10 @@ def told() -> Iterator[None]:
 
 def _how_far(seconds: float, passed: float, steps: int, impacts: int) -> str:
     if steps == 0 and impacts == 0:
-        return tr("after {seconds:.0f} s: preparing, no step was made yet. Ctrl+C stops it.", seconds=seconds)
+        return tr(
+            "after {seconds:.0f} s: still at work, no step in time was made yet. Ctrl+C stops it.",
+            seconds=seconds,
+        )
     return tr(
         "after {seconds:.0f} s: t = {time:.9g} s, {steps} steps, {impacts} impacts. Ctrl+C stops it.",
         seconds=seconds,

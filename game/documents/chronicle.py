@@ -56,7 +56,7 @@ class Chronicle:
 
     Yielding, impacts, rest, divergence and events of mods are read from the state, which knows their instants. Cables
     that go slack, struts that buckle, collapses and snap-throughs are found by looking, in a window at every frame: they are
-    dated to the look.
+    dated to the look. newest: what was told first the last time.
     """
 
     def __init__(self, model: Model, simulation: Simulation) -> None:
@@ -69,6 +69,7 @@ class Chronicle:
         self._yielded: tuple[Column, list[Happening]] = np.empty(0), []
         self._struck: tuple[bytes, list[Happening], int] = b"", [], 0
         self._known: set[Happening] = set()
+        self.newest: list[Happening] = []
         self._telling: list[tuple[Happening, float]] = []
 
     @property
@@ -102,7 +103,7 @@ class Chronicle:
         """What happened lately, in sentences: each for TOLD seconds, of which so many passed since the last call."""
         now = self.happenings
         new = [one for one in now if one not in self._known and one.kind != "impacts"]
-        self._known = set(now)
+        self._known, self.newest = set(now), new
         left = [(happening, seconds - elapsed) for happening, seconds in self._telling if seconds > elapsed]
         self._telling = [pair for pair in left if pair[0] in self._known] + [(one, TOLD) for one in new]
         del self._telling[:-MOST_TOLD]

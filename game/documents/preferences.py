@@ -29,6 +29,7 @@ _CHOICES: Mapping[str, tuple[Any, Callable[[], Iterable[Any]]]] = {
     "units": (USUAL, lambda: PRESETS),
     "convention": (TEXTBOOK, lambda: CONVENTIONS),
     "magnification": (1.0, lambda: MAGNIFICATIONS),
+    "sound": (True, lambda: (True, False)),
     "maximised": (False, lambda: (False, True)),
 }
 FARTHEST = 100_000  # points that a window is away from a corner of the display, or wide, at most

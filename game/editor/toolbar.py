@@ -40,7 +40,7 @@ TOOLBAR: dict[str, tuple[str, ...]] = {
         *("next shape", "fit", "new grid", "next grid"),
     ),
     marked("Model"): ("properties", "force method", "new", "load", "save again", "save"),
-    marked("Window"): ("screenshot", "toggle full screen", "next theme", "toggle help"),
+    marked("Window"): ("screenshot", "toggle full screen", "next theme", "toggle sound", "toggle help"),
 }
 WORDS = {  # beside icons, where there is room: of actions, or of the icons that they have while they are on
     "toggle run": marked("run"),
@@ -93,6 +93,7 @@ WORDS = {  # beside icons, where there is room: of actions, or of the icons that
     "screenshot": marked("picture"),
     "toggle full screen": marked("full screen"),
     "next theme": marked("theme"),
+    "toggle sound": marked("sound"),
     "toggle help": marked("help"),
     "walls.wall": marked("wall"),
     "probes.plot": marked("plot"),
@@ -186,6 +187,7 @@ def _of_selection(context: Context, pixel: Vector) -> Groups:
         yield ["free", "pin", "hold y", "hold x", *clamps, "springs"]
     if particles and alone:
         yield [
+            "follow",
             ("force", marked("load: click where its arrow ends")),
             *([("moment", marked("moment: click left or right of it"))] if turns else ()),
             ("velocity", marked("velocity: click where its arrow ends")),

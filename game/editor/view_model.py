@@ -13,11 +13,21 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.language import begun, english, joined, listed, marked, plural, tr
 from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import PAUSE
-from pinjoint.components.tags import Hovered
+from pinjoint.components.tags import Hovered, Selected
 from pinjoint.components.theory import EXACT, FIRST_ORDER, NAMES
-from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
+from pinjoint.components.view import (
+    BETWEEN,
+    MARGIN,
+    Preview,
+    Readout,
+    Status,
+    Trails,
+    drawn_places,
+    drawn_positions,
+)
 from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import Drawing, DrawRod, tool_in_hand
 from pinjoint.editor.gestures.moving import Placing
@@ -37,6 +47,7 @@ STILL = ("pause", "properties")  # scenes of the model in which time stands stil
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_WATCHED = 2000  # particles, up to which it is told that they left the picture
 MOST_NAMED = 3  # of these, by their names
+MOST_TRACED, LONGEST_TRAIL = 5, 600  # particles that leave trails, and moments in these
 FARTHEST = 8.0  # times: by how much the view shows more than the original structure to follow what moves
 MOST_FLASHES = 500  # impacts marked at a time
 
@@ -54,6 +65,35 @@ def exaggerate(context: Context) -> None:
     still = not context.scenes.time_passes or context.simulation.halted
     if context.gesture is None and context.document.exaggeration.review(still=still) and still:
         context.view.follow(context.model)
+
+
+def follow(context: Context) -> None:
+    """Let the view go with the particle that a person chose, be it where a frame draws or where a press acts."""
+    view = context.view
+    if view.followed is None:
+        return
+    particle, (x, y) = view.followed
+    if not particle.exists or particle.world is not context.model:
+        view.followed = None
+        return
+    here_x, here_y = drawn_positions(context.model)[particle.row].tolist()
+    centre = view.camera.centre
+    view.camera.centre = centre[0] + here_x - x, centre[1] + here_y - y
+    view.followed = particle, (here_x, here_y)
+
+
+def _trace(context: Context) -> None:
+    """Let what is selected leave trails while time passes; they end where time is taken back."""
+    model, view = context.model, context.view
+    particles = model.tagged(Selected, Particle)[:MOST_TRACED] if model.solution is None else []
+    trails, of = view.trails, (*particles, model.settings.displacement_scale)
+    if not particles:
+        view.trails = Trails()
+    elif trails.of != of or context.time != trails.time:
+        goes_on = trails.of == of and context.time > trails.time
+        places = trails.places[1 - LONGEST_TRAIL :] if goes_on else np.zeros((0, len(particles), 2))
+        here = drawn_positions(model)[[particle.row for particle in particles]]
+        view.trails = Trails(of, context.time, np.concatenate([places, here[None]]))
 
 
 def show(context: Context, elapsed: float) -> None:
@@ -100,6 +140,8 @@ def show(context: Context, elapsed: float) -> None:
     if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
         view.pressed = None
     view.flashes = _flashes(context)
+    follow(context)
+    _trace(context)
     view.heading = tr(scene.heading)
     view.provisional = _provisional(context)
     view.shape = context.document.shapes.shown or (statics.motion if solved else None)
@@ -196,7 +238,7 @@ def follows(context: Context) -> bool:
     Scripts and recordings fit the view by lines of their own. What goes too far is not followed: nothing would be seen.
     """
     view, model = context.view, context.model
-    by_itself = context.window is not None and context.busy and context.footer is None
+    by_itself = context.window is not None and context.busy and context.footer is None and view.followed is None
     busy = context.gesture is not None or view.menu is not None or view.tool or view.help
     if not by_itself or busy or not view.fitted or not _gone(context):
         return False

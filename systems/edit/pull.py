@@ -20,17 +20,22 @@ from pinjoint.systems.edit.arrows import COMFORTABLE, usual
 
 FOLLOWS_WITHIN = 0.5  # s shown, the period of a free particle on the spring
 FOLLOWED_CLOSELY = 8  # particles without rods, among which the hand's force is followed within a step
+HELD = 1e-3  # sin² of an angle: directions this near to those of rods are held by them
 STEPS_PER_RADIAN = 5.0  # at least, so that the spring does not upset the integration
 
 
 @dataclass(frozen=True)
 class Hand:
-    """A spring (kN/m) with a damper (kN·s/m) from a particle to the displacement `anchor` (m)."""
+    """A spring (kN/m) with a damper (kN·s/m) from a particle to the displacement `anchor` (m).
+
+    thrown: the velocity (m/s) at which it lets go of the particle; None: it holds it.
+    """
 
     particle: Particle
     stiffness: float
     damping: float
     anchor: Vector
+    thrown: Vector | None = None
 
     @classmethod
     def on(cls, model: Model, view: View, particle: Particle, pace: Callable[[], float]) -> Hand:
@@ -57,6 +62,19 @@ class Hand:
         """This hand with another anchor (m)."""
         return replace(self, anchor=anchor)
 
+    def throwing(self, model: Model, velocity: Vector) -> Hand:
+        """This hand as it lets go at a velocity (m/s), as far as supports and taut rods let that be; as it is where none."""
+        row, rods = self.particle.row, model.rods
+        mine = (rods.between == row).any(axis=1)
+        mine &= ~(rods.tension_only & (rods.axial_force <= 0.0))
+        start, end = (model.particles.displacement[rods.between[mine, side]] for side in (0, 1))
+        along = rods.difference[mine] + end - start
+        held = np.concatenate([along / np.hypot(*along.T)[:, None], np.eye(2)[model.particles.fixed[row]]])
+        size, ways = np.linalg.eigh(held.T @ held)
+        free, now = ways[:, size < HELD], model.particles.velocity[row]
+        x, y = (now + free @ (free.T @ (velocity - now))).tolist()
+        return replace(self, thrown=(x, y) if free.size else None)
+
 
 class Pull(Law):
     """The force of the hand on one particle. Its work is accounted for; without a hand the law is left out."""
@@ -82,7 +100,7 @@ class Pull(Law):
 
     def take(self, hand: Hand | None) -> None:
         """Pull by this hand from now on, or let go. The step program must be bound anew."""
-        self.hand = hand
+        self.hand = hand if hand is None or hand.thrown is None else None
         self._arrays = {}
 
     def move(self, model: Model, anchor: Vector) -> None:

@@ -19,22 +19,29 @@ Array = NDArray[np.float64]
 
 DENSE = 100  # particles up to which a full matrix is solved, without loading a library for others
 _SLIGHTLY = 1e-10  # of the largest stiffness: holds mechanisms, which then move far, but not infinitely
+_SHAKEN = (
+    1e-8  # of the largest stiffness × size: forces by which mechanisms move far, and slender structures hardly
+)
 _PERIOD_SHOWN = 2.0  # s in which one oscillation is shown
 _CREEP_SHOWN = 0.7  # s in which an overdamped model creeps by 1 − 1/e of the way
 _LOADING_SHOWN = 4.0  # s in which a load history is shown
 _FLIGHT_SHOWN = 2.5  # s in which a free body crosses the scene
-_REAL_TIME = (0.2, 5.0)  # a mechanism or flight this near to real time is shown in real time
+_REAL_TIME = (0.05, 5.0)  # a mechanism or flight this near to real time is shown in real time
+_REAL_STEPS = 0.2  # in its place, by which the steps of flights are chosen
 
 
-def natural_pace(model: Model, *, moving: bool = True) -> float:
+def natural_pace(model: Model, *, moving: bool = True, of_steps: bool = False) -> float:
     """Simulated seconds per second shown, rounded to 1, 2 or 5 times a power of ten.
 
-    moving: the present velocities count, too, where no rods swing.
+    moving: the present velocities count, too, where no rods swing. of_steps: not for a person, but as the steps of flights
+    have always been chosen, so that runs keep their bits.
     """
     if incomputable(model):
         return 1.0
-    swing = _response_time(model)
-    pace = swing if swing is not None else _flight_pace(model, moving)
+    swing = _response_time(model) if of_steps or not _is_loose(model) else None
+    pace = (
+        swing if swing is not None else _flight_pace(model, moving, _REAL_STEPS if of_steps else _REAL_TIME[0])
+    )
     end = loads_end(model)
     if math.isfinite(end) and end > 0.0:
         pace = max(pace, end / _LOADING_SHOWN)
@@ -62,8 +69,8 @@ def loaded_mode(model: Model) -> tuple[float, float] | None:
     if model.rods.count == 0 or not free_coordinates(model).any():
         return None
     force = _forces(model)
-    if not force[free_coordinates(model).ravel()].any():  # some that excite all directions
-        force = np.ones_like(force) * np.where(np.arange(len(force)) % 2, -1.0, 0.3)
+    if not force[free_coordinates(model).ravel()].any():
+        force = _everywhere(force)
     displacement = _static_displacement(model, force)
     if displacement is None:
         return None
@@ -77,6 +84,19 @@ def loaded_mode(model: Model) -> tuple[float, float] | None:
     frequency = math.sqrt(float((stiffness * moved**2).sum()) / inertia)
     damped = float((damping * moved**2).sum()) / inertia + model.environment.drag
     return (frequency, damped) if frequency > 0.0 else None
+
+
+def _everywhere(force: Array) -> Array:
+    """Forces in place of these that excite all directions."""
+    return np.where(np.arange(len(force)) % 2, -1.0, 0.3)
+
+
+def _is_loose(model: Model) -> bool:
+    """True if rods leave something free to move as drawn, such as a pendulum, be it pulled straight by its load."""
+    if model.rods.count == 0 or not free_coordinates(model).any():
+        return False
+    shaken = _SHAKEN * deformations(model)[3].max() * float(np.ptp(model.particles.position, axis=0).max())
+    return _static_displacement(model, shaken * _everywhere(_forces(model))) is None
 
 
 def expected_response(model: Model) -> tuple[Array, Array] | None:
@@ -155,7 +175,7 @@ def _solved_sparsely(model: Model, free: NDArray[np.intp], force: Array) -> Arra
     return splu(csc_matrix(held)).solve(force)
 
 
-def _flight_pace(model: Model, moving: bool) -> float:
+def _flight_pace(model: Model, moving: bool, real_from: float) -> float:
     """Pace from the time in which the fastest particle crosses the scene."""
     particles = model.particles
     if particles.count == 0:
@@ -169,4 +189,4 @@ def _flight_pace(model: Model, moving: bool) -> float:
     if pull > 0.0:
         times.append(math.sqrt(2.0 * size / pull))
     pace = min(times, default=_FLIGHT_SHOWN) / _FLIGHT_SHOWN
-    return 1.0 if _REAL_TIME[0] <= pace <= _REAL_TIME[1] else pace
+    return 1.0 if real_from <= pace <= _REAL_TIME[1] else pace

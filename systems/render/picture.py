@@ -43,7 +43,7 @@ from pinjoint.systems.render.model.structure import (
     label_names,
 )
 from pinjoint.systems.render.model.supports import draw_supports, support_sides
-from pinjoint.systems.render.model.tools import draw_flashes, draw_preview
+from pinjoint.systems.render.model.tools import draw_flashes, draw_preview, draw_trails
 from pinjoint.systems.render.model.utilisation import shade_rods
 from pinjoint.systems.render.theme import Colour, Theme, load_theme
 from pinjoint.systems.render.ui.controls import put_controls
@@ -156,6 +156,8 @@ def _draw_structure(sheet: Sheet) -> None:
 
 def _draw_arrows(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     """Loads, velocities and reactions, beside supports on these sides of particles."""
+    if sheet.view.bare:
+        return
     if sheet.view.enveloped is not None:
         draw_enveloped_reactions(sheet, sheet.view.enveloped)
         return
@@ -172,6 +174,7 @@ def _composed(sheet: Sheet) -> Picture:
     draw_grid(sheet)
     for layer in EXTENSIONS.below:
         sheet.marks += layer(sheet)
+    sheet.marks += draw_trails(sheet)
     if sheet.view.free_bodies and sheet.view.forces_known:
         draw_halos(sheet)
         draw_free_bodies(sheet)

@@ -76,7 +76,9 @@ class StepSize:
         revision = self._model.newest(Role.DOCUMENT)
         if self._looked_at != revision:
             self._looked_at = revision
-            self._between_looks = _rounded_down(OBSERVED * natural_pace(self._model, moving=False))
+            self._between_looks = _rounded_down(
+                OBSERVED * natural_pace(self._model, moving=False, of_steps=True)
+            )
         return self._between_looks
 
     def begin(self, size: float) -> None:
@@ -135,7 +137,10 @@ class StepSize:
         share = ACCURATE if self._model.rods.count <= SMALL else SAFETY
         longest = FREE_STEP
         if self._programs.integrator.exact:  # steps are only how often flight is looked at
-            longest = min(longest, max(OBSERVED * natural_pace(self._model), PASSED * self._model.clock.time))
+            longest = min(
+                longest,
+                max(OBSERVED * natural_pace(self._model, of_steps=True), PASSED * self._model.clock.time),
+            )
         return _rounded_down(min(share * self.stable, longest))
 
     def review(self, mean: float) -> None:

@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_090,
-    "files": 385,
-    "names": 3_974,  # functions, classes and constants of modules
-    "public names": 2_368,
-    "numbers": 1_533,  # other than 0, 1 and 2, in constants and defaults
+    "lines": 72_413,
+    "files": 386,
+    "names": 4_000,  # functions, classes and constants of modules
+    "public names": 2_384,
+    "numbers": 1_569,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 59_881,
+    "lines of tests": 60_191,
 }
 
 

@@ -129,4 +129,4 @@ def test_numbers_are_written_with_the_signs_of_the_language_and_known_in_english
         assert written.place((1.205, -1.6)) == "(120,5; −160) cm"
         assert written.vector((120.0, -160.0)) == "(120; −160)"
         assert english(written.place((1.205, -1.6))) == "(120.5, −160) cm"
-        assert english(written.pace(0.00035)) == "1 s shown = 0.35 ms simulated"
+        assert english(written.pace(0.00035)) == "slow motion: 1 s shown = 0.35 ms"

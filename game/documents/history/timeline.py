@@ -95,7 +95,7 @@ class Timeline:
             }
 
     def hold(self, hand: Hand | None) -> None:
-        """Pull by a hand from now on, differently, or (None) let go."""
+        """Pull by a hand from now on, differently, or let go (None, or one that throws)."""
         self.begin()
         moment = self._simulation.moment
         anew = self._change_hand(hand)
@@ -107,12 +107,15 @@ class Timeline:
         """Let the hand change; True if another step program takes over, which takes longer to bind than many steps."""
         held = self._pull.hand
         self._simulation.stay()
-        if held is not None and hand is not None and held.particle is hand.particle:
+        thrown = hand.thrown if hand is not None else None
+        if held is not None and hand is not None and held.particle is hand.particle and thrown is None:
             self._pull.move(self._simulation.model, hand.anchor)
             self._simulation.wake()
             return False
         self._simulation.before_change()
         self._pull.take(hand)
+        if hand is not None and thrown is not None:
+            self._simulation.model.writable("particles.velocity")[hand.particle.row] = thrown
         return True
 
     # --- going back ------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import HUBS
 from pinjoint.components.tags import Selected
+from pinjoint.components.view import drawn_positions
 from pinjoint.editor.context import Context, tell
 from pinjoint.editor.scenes.methods import ForceMethod
 from pinjoint.systems.edit import Refusal
@@ -56,6 +57,20 @@ action("close menu", "escape", "close the menu", in_menu=False)(
 def _environment(context: Context, pixel: Vector) -> None:
     context.select()
     ACTIONS["properties"].perform(context, pixel)
+
+
+@offer(
+    "follow",
+    "",
+    "let the view follow it",
+    pressed=lambda context: context.view.followed is not None and context.view.followed[0] in context.selected,
+)
+def _follow(context: Context, pixel: Vector) -> None:
+    """Let the view go with the selected particle, or, if it does so, stay where it is."""
+    (particle, *_), view = _particles(context), context.view
+    x, y = drawn_positions(context.model)[particle.row].tolist()
+    stays = view.followed is not None and view.followed[0] is particle
+    view.followed, view.fitted = None if stays else (particle, (x, y)), False
 
 
 def _particles(context: Context) -> list[Particle]:

@@ -102,6 +102,9 @@ def _turn(by: int, context: Context, pixel: Vector) -> None:
 action("help on")(partial(_turn, 1))
 action("help back")(partial(_turn, -1))
 action("close help")(lambda context, pixel: setattr(context.view, "help", 0))
+action("toggle sound", "", "sound on or off", pressed=attrgetter("view.sound"), enabled=attrgetter("window"))(
+    toggle("sound")
+)
 action("toggle full screen", "f11", "full screen on or off")(
     lambda context, pixel: context.window and context.window.toggle_full_screen()
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Sequence
 from typing import Any
 
@@ -16,7 +17,7 @@ from pinjoint.components.load import DIRECTIONS, SpanLoad
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.particle import Particle
 from pinjoint.components.view import BETWEEN, Preview, drawn_positions
-from pinjoint.editor.context import Context, Gesture
+from pinjoint.editor.context import Context, Gesture, tell
 from pinjoint.editor.gestures.drawing import STEP, along, scale_said
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.arrows import Loaded, arrow_scale, borne_at
@@ -27,6 +28,9 @@ from pinjoint.systems.edit.typed import tidy
 from pinjoint.systems.forms.properties import heading
 from pinjoint.systems.physics.pace import natural_pace
 
+LATELY = 0.08  # s shown before a particle is let go, in which the pointer's velocity is what it is thrown at
+FLICK = 8.0  # points by which it moves then, at least
+MOST_LATELY = 64  # places where it is known to have been
 LEVEL = 0.1  # cosine from which on an arrow counts as one towards or away from what bears it
 
 
@@ -165,9 +169,9 @@ class MoveArrow(Placing):
 
 
 class PullParticle(Gesture):
-    """Pulls a particle by a spring while time passes; see systems/edit/pull.py."""
+    """Pulls a particle by a spring while time passes, and throws it if it is let go in a flick; see systems/edit/pull.py."""
 
-    hint = marked("pull with the pointer     let go to release it")
+    hint = marked("pull with the pointer     let go to release it, in a flick to throw it")
 
     def __init__(self, context: Context, particle: Particle) -> None:
         if context.model.settings.displacement_scale == 0.0:
@@ -180,6 +184,8 @@ class PullParticle(Gesture):
         context.document.timeline.hold(
             Hand.on(context.model, context.view, particle, lambda: natural_pace(context.model))
         )
+        # Where the pointer was of late, by simulated time, which a recording that is played knows, too.
+        self._path = deque([(context.time, particle.displacement)], maxlen=MOST_LATELY)
 
     def move(self, context: Context, pixel: Vector) -> None:
         x, y = context.view.camera.to_model(pixel)
@@ -188,9 +194,34 @@ class PullParticle(Gesture):
         if hand is not None:
             anchor = ((x - original[0]) / scale, (y - original[1]) / scale)
             context.document.timeline.hold(hand.at(anchor))
+            if self._path[-1][0] == context.time:
+                self._path.pop()
+            self._path.append((context.time, anchor))
 
     def drop(self, context: Context, pixel: Vector) -> None:
-        self.cancel(context)
+        hand, velocity = context.document.pull.hand, self._flick(context)
+        if hand is None or velocity is None or (hand := hand.throwing(context.model, velocity)).thrown is None:
+            self.cancel(context)
+            return
+        context.document.timeline.hold(hand)
+        speed = written.stated(math.hypot(*hand.thrown), "m/s", 3)
+        tell(context, tr("thrown at {speed}", speed=speed), self._particle)
+
+    def _flick(self, context: Context) -> Vector | None:
+        """The velocity of the pointer (m/s) over the last LATELY seconds shown; None if it moved less than FLICK."""
+        view, model, now = context.view, context.model, context.time
+        lately = LATELY * context.document.live.clock.factor * natural_pace(model)
+        begun, start = next(
+            (place for place in reversed(self._path) if place[0] <= now - lately), self._path[0]
+        )
+        (before, _), (last, end) = self._path[max(len(self._path) - 2, 0)], self._path[-1]
+        moved, passed = np.subtract(end, start), (last if now - last < 1.5 * (last - before) else now) - begun
+        passed = max(passed, lately - (last - before))  # less passes where the machine cannot keep the pace
+        points = moved * model.settings.displacement_scale * view.camera.scale / view.pixel_ratio
+        if np.hypot(*points) < FLICK:
+            return None
+        x, y = (moved / passed).tolist()
+        return x, y
 
     def cancel(self, context: Context) -> None:
         context.document.timeline.hold(None)

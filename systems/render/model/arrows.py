@@ -211,14 +211,17 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     particles = sheet.model.particles
     largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
     taken = np.full((len(sheet.centres), 2), NO_SUPPORT)  # by reactions: a side of each particle, by axis
-    applied = particles.applied_force - borne_between(sheet.model)  # rows of arrows show the others
+    along_rods = borne_between(sheet.model)  # rows of arrows show these
+    applied = particles.applied_force - along_rods
     if sheet.model.first_order:
         left_out = ~nodes(sheet.model)
         applied[left_out] = full_load(sheet.model)[left_out, :2]
     for name, force in (("reaction", particles.reaction[shown]), ("load", applied[shown])):
         index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST))
         if len(index):
-            _draw_forces(sheet, name, shown[index], axis, force[index, axis], largest, sides, taken)
+            value, rows = force[index, axis], shown[index]
+            pressed = value * along_rods[rows, axis] < 0.0
+            _draw_forces(sheet, name, rows, axis, value, largest, sides, taken, pressed)
 
 
 def largest_force(model: Model, view: View) -> float:
@@ -241,12 +244,13 @@ def _draw_forces(
     largest: float,
     sides: NDArray[np.int64],
     taken: NDArray[np.int64],
+    pressed: Truths,
 ) -> None:
-    """Arrows of forces of one kind along an axis each, with their values."""
+    """Arrows of forces of one kind along an axis each, with their values; pressed: rows of arrows stand before them."""
     # Model y is up, pixels' y is down: a positive vertical force points in direction 3.
     direction = np.where(axis == 0, np.where(value > 0, 0, 2), np.where(value > 0, 3, 1))
     length = lengths(sheet, FORCES, np.abs(value), largest)
-    tail, outer = _arrow_places(sheet, rows, direction, length, sides, taken[rows, axis])
+    tail, outer = _arrow_places(sheet, rows, direction, length, sides, taken[rows, axis], pressed)
     taken[rows, axis] = outer
     along, parts = DIRECTIONS[direction], (_FIELDS[name], 2 * rows + axis)
     tip, of = tail + along * length[:, None], [("particles", row) for row in rows.tolist()]
@@ -284,17 +288,18 @@ def _arrow_places(
     length: Values,
     sides: NDArray[np.int64],
     taken: NDArray[np.int64],
+    pressed: Truths,
 ) -> tuple[Points, NDArray[np.int64]]:
     """Tails of the arrows, and on which side of its particle each stands.
 
     An arrow starts at the rim, or ends at it where the side that it comes from is freer; there it stands beyond
-    the support, if there is one, and beyond the arrow of a moment. taken: the side of another arrow along the
-    same axis, or NO_SUPPORT.
+    the support, if there is one, and beyond the arrow of a moment. pressed: loads along rods stand ahead. taken: the
+    side of another arrow along the same axis, or NO_SUPPORT.
     """
     u = sheet.unit
     opposite, crowd = (direction + 2) % 4, crowding(sheet, rows)
     supported = sides[rows] != NO_SUPPORT
-    busy_ahead = crowd[rows, direction] + 0.8 * (supported & (sides[rows] == direction))
+    busy_ahead = crowd[rows, direction] + 0.8 * (supported & (sides[rows] == direction)) + pressed
     busy_behind = crowd[rows, opposite] + 0.8 * (supported & (sides[rows] == opposite))
     pushes = ((busy_behind < busy_ahead - 0.1) & (taken != opposite)) | (taken == direction)
     side = np.where(pushes, opposite, direction)

@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 
 from pinjoint.components.bent import AXIAL, FLAT, MOMENT, SHEAR, Axes, inner_forces
+from pinjoint.components.camera import Viewport
 from pinjoint.components.language import marked, tr
 from pinjoint.components.load import varying
 from pinjoint.components.model import Model
@@ -134,7 +135,7 @@ def draw_diagrams(sheet: Sheet, taken: float = 0.0) -> None:
             sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST], rows[force[rows] < -SMALLEST]
         sheet.advise(tr("zoom in to see force diagrams"))
         return
-    room = diagram_room(sheet, length)
+    room = diagram_room(sheet.viewport, sheet.unit, length)
     diagram = (
         _curves(sheet, rows, quantity, min(_ROOM * room, MARGIN * sheet.unit), taken)
         if sheet.is_frame
@@ -146,10 +147,9 @@ def draw_diagrams(sheet: Sheet, taken: float = 0.0) -> None:
         _write(sheet, diagram)
 
 
-def diagram_room(sheet: Sheet, length: float) -> float:
+def diagram_room(window: Viewport, unit: float, length: float = math.inf) -> float:
     """How high (pixels) diagrams of rods of such a length leave the structure readable."""
-    window = min(sheet.viewport.width, sheet.viewport.height)
-    return max(min(0.15 * window, 0.6 * length), 10.0 * sheet.unit)
+    return max(min(0.15 * min(window.width, window.height), 0.6 * length), 10.0 * unit)
 
 
 # --- rectangles, where none bends --------------------------------------------------------------------

@@ -28,7 +28,7 @@ def draw_envelope(sheet: Sheet, envelope: Any, taken: float) -> None:
     side = np.full(len(every), -1.0 if quantity == MOMENT else 1.0)
     axes = baseline(sheet, every)
     points, normals = stations(axes, envelope.shares[quantity], side)
-    room = diagram_room(sheet, sheet.rod_length)
+    room = diagram_room(sheet.viewport, sheet.unit, sheet.rod_length)
     per_pixel = max(crowding(sheet, points, normals, values, taken) for values in (least, most))
     scale = sheet.model.settings.diagram_scale / max(largest / room, per_pixel)
     low, high = (points + scale * values[..., None] * normals for values in (least, most))

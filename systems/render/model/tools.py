@@ -32,6 +32,13 @@ def draw_flashes(sheet: Sheet) -> list[Mark]:
     return [Stamps("disc", at, 7.0 * sheet.unit, sheet.unit, faded(colour, 0.25), faded(colour, 0.8))]
 
 
+def draw_trails(sheet: Sheet) -> list[Mark]:
+    """Where what is selected was in the run so far."""
+    colour, places = faded(sheet.theme.sketch, 0.6), sheet.view.trails.places
+    paths = sheet.view.camera.to_pixels(places).transpose(1, 0, 2)
+    return [mark for path in paths for mark in _lines(sheet, path, colour, 1.5)]
+
+
 def draw_preview(sheet: Sheet) -> list[Mark]:
     """The rod, arrow, spring, support or box of a gesture, with its value at the end."""
     preview = sheet.view.preview

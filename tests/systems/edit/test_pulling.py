@@ -2,10 +2,12 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from pinjoint import Session
 from pinjoint.components.snapshot import Snapshot
+from pinjoint.systems.run import real_time
 from tests.systems.edit.hand import EMPTY, FRAME, assert_same_state, preview, run_frames
 
 
@@ -89,3 +91,97 @@ def test_a_pull_is_undone_with_its_run(triangle: Session) -> None:
     assert triangle.particles["B"].displacement != (0.0, 0.0)
     triangle.press("ctrl+z")
     assert_same_state(triangle, before)
+
+
+def flick(session: Session, start: tuple[float, float], by: tuple[float, float], frames: int = 12) -> None:
+    """Drag from a point (m) by a vector (m) in so many frames, and let go in the midst of it."""
+    session.press("drag", session.point(*start))
+    for number in range(1, frames + 1):
+        session.press(
+            "drag to", session.point(*(s + b * number / frames for s, b in zip(start, by, strict=True)))
+        )
+        session.frame(FRAME)
+    session.press("drop")
+
+
+def test_a_flick_throws_at_the_velocity_of_the_pointer() -> None:
+    session = Session.open(EMPTY | {"particles": [{"name": "A", "position": [0, 0]}]})
+    session.press("space")
+    session.frame(FRAME)
+    flick(session, (0.0, 0.0), (1.2, -0.6))
+    assert "thrown at 6.7" in session.notice  # √5 · 0.6 m in 12/60 s
+    assert session.particles["A"].velocity == pytest.approx((6.0, -3.0), rel=1e-9)
+    run_frames(session, 6)
+    assert session.particles["A"].velocity == pytest.approx((6.0, -3.0), rel=1e-9)
+    assert session.energy.work == pytest.approx(session.energy.kinetic, rel=1e-9)
+    assert not session.document.edited
+
+
+def test_a_pointer_that_rests_before_it_lets_go_throws_nothing() -> None:
+    session = Session.open(EMPTY | {"particles": [{"name": "A", "position": [0, 0]}]})
+    session.press("space")
+    session.frame(FRAME)
+    session.press("drag", session.point(0.0, 0.0))
+    session.press("drag to", session.point(1.0, 0.0))
+    run_frames(session, 6)
+    before = session.particles["A"].velocity
+    session.press("drop")
+    assert (session.particles["A"].velocity, session.notice) == (before, "")
+
+
+def test_only_what_rods_and_supports_leave_free_is_thrown(
+    triangle: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for limit in ("BUDGET", "LONGEST_STEP", "AT_ONCE"):  # frames keep the pace on any machine
+        monkeypatch.setattr(real_time, limit, 10.0)
+    session = Session.open("pendulum")
+    session.press("space")
+    session.frame(FRAME)
+    bob = session.particles["bob"]
+    session.press("drag", session.point(*bob.position))
+    for number in range(1, 13):
+        session.press("drag to", session.point(1.0 + 0.025 * number, -0.075 * number))
+        session.frame(FRAME)
+    held, arm = np.array(bob.velocity), np.add(bob.position, bob.displacement)
+    session.press("drop")
+    thrown, across = np.array(bob.velocity), np.array([arm[1], -arm[0]]) / np.hypot(*arm)
+    assert thrown @ arm == pytest.approx(held @ arm, rel=1e-9)  # as fast along the arm as before
+    assert thrown @ across == pytest.approx(
+        np.array([1.5, -4.5]) @ across, rel=0.15
+    )  # whole steps: one more or less
+    assert "thrown at" in session.notice
+    triangle.press("space")
+    triangle.frame(FRAME)
+    flick(triangle, (1.0, 1.0), (0.5, 0.5))
+    assert (triangle.notice, triangle.document.pull.hand) == ("", None)
+
+
+def test_a_throw_is_gone_through_again_and_taken_back_with_its_run() -> None:
+    session = Session.open("pendulum")
+    before = Snapshot.take(session.model)
+    session.press("space")
+    session.frame(FRAME)
+    flick(session, session.particles["bob"].position, (0.3, -0.9))
+    run_frames(session, 6)
+    session.press("space")
+    assert session.step(1)  # to the end of a step that is under way
+    thrown, timeline = Snapshot.take(session.model), session.document.timeline
+    steps = session.model.clock.steps
+    assert timeline.go_to(timeline.first)
+    assert timeline.go_to(steps)
+    assert_same_state(session, thrown)
+    session.press("ctrl+z")
+    session.press("ctrl+z")
+    assert_same_state(session, before)
+
+
+def test_pulling_harder_than_a_rod_bears_makes_it_yield_and_says_so(triangle: Session) -> None:
+    triangle.particles["B"].force = (0.0, 0.0)
+    triangle.press("space")
+    triangle.frame(FRAME)
+    triangle.press("drag", triangle.point(1.0, 1.0))
+    triangle.press("drag to", triangle.point(1.0, 3.2))
+    run_frames(triangle, 400)
+    assert {triangle.rods.names[row] for row in triangle.rods.plastic_strain.nonzero()[0]} == {"AB", "BC"}
+    assert "yield" in triangle.view.status.notice
+    assert preview(triangle).label.endswith(" kN")

@@ -16,7 +16,7 @@ from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, tri
 def test_status_bar() -> None:
     status = Status(time=1.234e-3, speed=0.35e-3, state="running", hint="Esc pauses")
     texts = picture_of(triangle(), width=900, status=status).texts
-    assert {"Running", "t = 1.234 ms", "1 s shown = 0.35 ms simulated", "Esc pauses"} <= set(texts)
+    assert {"Running", "t = 1.234 ms", "slow motion: 1 s shown = 0.35 ms", "Esc pauses"} <= set(texts)
     assert "Running" not in picture_of(triangle()).texts
 
 

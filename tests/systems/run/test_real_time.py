@@ -6,8 +6,10 @@ from typing import Any
 
 import pytest
 
+from pinjoint.documents import models
 from pinjoint.session import Session
 from pinjoint.systems.collision.free import discs
+from pinjoint.systems.physics.pace import natural_pace
 from pinjoint.systems.program.compiler import Choice, Unfinished
 from pinjoint.systems.run import real_time
 from pinjoint.systems.run.real_time import BUDGET, RealTimeRunner
@@ -159,3 +161,26 @@ def test_a_small_model_goes_on_at_once() -> None:
     session.press("space")
     session.frame(FRAME)
     assert session.model.clock.steps > 0
+
+
+# --- the pace that suits a model -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name", ["pendulum", "newtons_cradle", "collision_vi", "billiards_break", "ball_on_frame"]
+)
+def test_what_moves_freely_is_shown_in_real_time(name: str) -> None:
+    assert natural_pace(models.load(name)) == 1.0
+
+
+@pytest.mark.parametrize("name", ["isostatic", "tower", "eulers_columns", "snap_through", "portal"])
+def test_structures_are_shown_in_slow_motion(name: str) -> None:
+    assert natural_pace(models.load(name)) <= 0.5
+
+
+def test_a_pendulum_that_hangs_straight_is_no_structure() -> None:
+    """Its load stretches it only, but a hand will swing it."""
+    particles = [{"name": "A", "position": [0, 0], "fixed": [True, True]}, {"name": "B", "position": [0, -1]}]
+    rods, weight = [{"name": "AB", "between": ["A", "B"]}], {"acceleration": [0, -9.81]}
+    content = {"format": "pinjoint model", "version": 1, "particles": particles, "rods": rods}
+    assert natural_pace(Session.open(content | {"environment": weight}).model) == 1.0
