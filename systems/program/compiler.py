@@ -94,8 +94,8 @@ class GeneratedModule:
 
     Both compute the same bits, so that one may follow the other between any two calls. Nothing proves that of kernels that
     others wrote: what calls some is compiled before its first call, unless nothing may be. functions: what Python may
-    call, by name, as declared. users: programs that call it. spent: time that interpreting took in this process (s). portion: of what there is to do,
-    such as steps, for one interpreted call, so that another form may soon follow.
+    call, by name, as declared. users: programs that call it. spent: time that interpreting took in this process (s).
+    portion: of what there is to do, such as steps, for one interpreted call, so that another form may soon follow.
     """
 
     def __init__(

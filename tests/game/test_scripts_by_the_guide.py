@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.field import FieldError
 from pinjoint.commands.command_line import main
 from pinjoint.components import Load, Particle, Rod
+from pinjoint.components.field import FieldError
 from pinjoint.sweeps import sweep
 
 
@@ -147,11 +147,18 @@ def test_a_model_is_kept_and_read_again(tmp_path: Path) -> None:
 
 def test_results_are_looked_at_in_a_line() -> None:
     session = Session.open("load_cases")
-    for result in (session.statics(), session.envelope(), session.buckling(), Session.open("hyperstatic").force_method()):
+    for result in (
+        session.statics(),
+        session.envelope(),
+        session.buckling(),
+        Session.open("hyperstatic").force_method(),
+    ):
         assert "\n" not in repr(result)
         assert len(repr(result)) < 1500
     assert "diagrams={'end_axial_force': array (3, 2), 'shear'" in repr(session.statics())
-    assert repr(session.envelope()).startswith("Envelope(combinations=('spans 1 and 2', 'spans 1 and 3', …), without={}, ")
+    assert repr(session.envelope()).startswith(
+        "Envelope(combinations=('spans 1 and 2', 'spans 1 and 3', …), without={}, "
+    )
 
 
 def test_what_is_no_element_or_diagram_is_named() -> None:
