@@ -92,7 +92,7 @@ class World:
         self.changing = False
         self.solution: Solution | None = None
         self._shown_since = 0  # revision at which the solution took the place of the state, or gave it back
-        self.bent: tuple[int, Any] = -1, ()  # how rods are bent, found at this revision (bent.py)
+        self.bent: tuple[int, Any, Any] = -1, (), {}  # how rods are bent, found at this revision (bent.py)
         self.sound = -1  # the revision up to which all numbers can be computed with (numeric_range.py)
         self._naming: Callable[[int, str], str] | None = None
         self._open: list[Command] | None = None
@@ -355,7 +355,8 @@ class World:
         derivation = self._derivations.get(name)
         if derivation is None or (known := self._derived_at[derivation]) == self.revision:
             return
-        if max(self.newest(*self._roots_of(derivation)), self.structure, self._shown_since) > known:
+        roots = self._roots_of(derivation)
+        if max(self.newest(*roots), self.structure, self._shown_since * (Role.STATE in roots)) > known:
             new_rows = (self.tables[target.split(".")[0]].structure for target in derivation.targets)
             sources = map(self.version, derivation.sources)
             if any(changed > known for changed in itertools.chain(sources, new_rows)):
