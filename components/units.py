@@ -11,9 +11,10 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from decimal import Decimal
+from typing import Any
 
-from pinjoint.components.field import CM, MOVED, SCREEN, FieldError
-from pinjoint.components.language import joined
+from pinjoint.components.field import CM, MOVED, SCREEN, FieldError, on_screen
+from pinjoint.components.language import joined, marked
 
 _Dimension = tuple[int, ...]  # powers of m, kg, s, K; angles have none
 
@@ -56,6 +57,18 @@ PRESETS = {
     USUAL: "",
     "m kN mm": "m, mm displacement, kg/m",
     "N mm": "mm, N, N·mm, N/mm, N·mm², N/mm², mm², mm³, mm⁴, kg/m, N·mm/rad, N·s/mm",
+}
+# Single ones to choose, by quantities; the first of each are the usual ones.
+SINGLE = {
+    marked("lengths"): ("cm", "m", "mm"),
+    marked("displacements"): ("cm displacement", "mm displacement", "m displacement"),
+    marked("forces"): ("kN", "N", "MN"),
+    marked("moments"): ("kN·m", "N·m", "N·mm"),
+    marked("forces per length"): ("kN/m", "N/m", "N/mm"),
+    marked("bending stiffness"): ("kN·m²", "N·mm²", "MN·m²"),
+    marked("mass per length"): ("kg/cm", "kg/m", "t/m"),
+    marked("angles"): ("rad", "°", "mrad"),
+    marked("digits"): tuple(f"{number} digits" for number in range(3, 7)),
 }
 _ON_SCREEN = (
     *(CM[0], MOVED[0], "kN", "kN·m", "kN/m", "kN·m²", "kN·m/rad", "kN·s/m", "kg/cm", "GPa", "MPa"),
@@ -118,27 +131,56 @@ def show_in(text: str) -> None:
     Raises FieldError if one is none, or is of no kind that is shown; then all stays as it was.
     """
     found = {"units": (text, 0.0)}
-    for part in filter(None, map(str.strip, PRESETS.get(text, text).split(","))):
-        unit, _, what = part.partition(" ")
-        if what == "digits" and unit in "345678":
-            found[what] = "", float(unit)
-            continue
-        size, powers, rest = _read(unit)
-        usual = {kind: _read(CM[0] if kind == MOVED[0] else kind) for kind in _ON_SCREEN if what in ("", kind)}
-        chosen = {
-            kind: (unit, float(own / size))
-            for kind, (own, its, _) in usual.items()
-            if its == powers and ("/rad" in kind) == ("/rad" in unit)
-        }
-        if rest or not chosen:
-            raise FieldError(
-                "“{part}” is no unit on screen; write units such as {units}, or 3 to 8 digits.",
-                part=part,
-                units=joined(_ON_SCREEN, ", "),
-            )
-        found |= chosen
+    for part in _parts(text):
+        found |= _meant(part)
     SCREEN.clear()
     SCREEN.update(found)
+
+
+def show_single(part: str) -> None:
+    """Say numbers of one kind in another unit, or with so many "digits", and the others as before. Raises FieldError."""
+    kinds = _meant(part).keys()
+    others = [one for one in _parts(units_on_screen()) if not _meant(one).keys() <= kinds]
+    show_in(", ".join([*others, part]))
+
+
+def is_shown(part: str) -> bool:
+    """True if numbers of a kind are said in such a unit, or with so many "digits", now."""
+    kind, meant = next(iter(_meant(part).items()))
+    return SCREEN.get(kind, ("", 4.0) if kind == "digits" else on_screen(kind)) == meant
+
+
+def can_show(text: Any) -> bool:
+    """True if `show_in` takes a text."""
+    try:
+        return isinstance(text, str) and all(map(_meant, _parts(text)))
+    except FieldError:
+        return False
+
+
+def _parts(text: str) -> list[str]:
+    return [part for part in map(str.strip, PRESETS.get(text, text).split(",")) if part]
+
+
+def _meant(part: str) -> dict[str, tuple[str, float]]:
+    """By kinds of numbers the unit that a part means, and how many of it are one of the usual; or "digits"."""
+    unit, _, what = part.partition(" ")
+    if what == "digits" and unit in tuple("345678"):
+        return {what: ("", float(unit))}
+    size, powers, rest = _read(unit)
+    usual = {kind: _read(CM[0] if kind == MOVED[0] else kind) for kind in _ON_SCREEN if what in ("", kind)}
+    chosen = {
+        kind: (unit, float(own / size))
+        for kind, (own, its, _) in usual.items()
+        if its == powers and ("/rad" in kind) == ("/rad" in unit)
+    }
+    if rest or not chosen:
+        raise FieldError(
+            "“{part}” is no unit on screen; write units such as {units}, or 3 to 8 digits.",
+            part=part,
+            units=joined(_ON_SCREEN, ", "),
+        )
+    return chosen
 
 
 def units_on_screen() -> str:

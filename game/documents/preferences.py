@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -15,22 +15,22 @@ from typing import Any
 from platformdirs import user_config_path
 
 from pinjoint.components.language import LANGUAGES
-from pinjoint.components.units import PRESETS, USUAL
+from pinjoint.components.units import USUAL, can_show
 from pinjoint.components.view import CONVENTIONS, MAGNIFICATIONS, TEXTBOOK
 from pinjoint.documents import models
 from pinjoint.systems.render.theme import theme_names
 
 CONFIG_VARIABLE = "PINJOINT_CONFIG"  # names another folder than the system's own
 DEFAULT_THEME = "light"
-# By entry: the default, and all that there are.
-_CHOICES: Mapping[str, tuple[Any, Callable[[], Iterable[Any]]]] = {
-    "theme": (DEFAULT_THEME, theme_names),
-    "language": ("", lambda: LANGUAGES),
-    "units": (USUAL, lambda: PRESETS),
-    "convention": (TEXTBOOK, lambda: CONVENTIONS),
-    "magnification": (1.0, lambda: MAGNIFICATIONS),
-    "sound": (True, lambda: (True, False)),
-    "maximised": (False, lambda: (False, True)),
+# By entry: the default, and whether something is a choice.
+_CHOICES: Mapping[str, tuple[Any, Callable[[Any], bool]]] = {
+    "theme": (DEFAULT_THEME, lambda one: one in theme_names()),
+    "language": ("", lambda one: one in list(LANGUAGES)),
+    "units": (USUAL, can_show),
+    "convention": (TEXTBOOK, lambda one: one in CONVENTIONS),
+    "magnification": (1.0, lambda one: one in MAGNIFICATIONS),
+    "sound": (True, lambda one: one in (True, False)),
+    "maximised": (False, lambda one: one in (False, True)),
 }
 FARTHEST = 100_000  # points that a window is away from a corner of the display, or wide, at most
 
@@ -46,7 +46,7 @@ def preferred(entry: str) -> Any:
     """The choice that was made last; the default where none can be read, or it is one no more."""
     default, known = _CHOICES[entry]
     last = read(settings_path()).get(entry)
-    return next((choice for choice in known() if choice == last), default)
+    return last if known(last) else default
 
 
 def preferred_keys() -> list[tuple[str, str, str]]:

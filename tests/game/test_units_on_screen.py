@@ -12,6 +12,7 @@ from pinjoint.commands.language import speak_as_asked
 from pinjoint.components.field import FieldError
 from pinjoint.components.form import Form
 from pinjoint.components.units import PRESETS, USUAL, show_in, shown_in, units_on_screen
+from pinjoint.documents import preferences
 from pinjoint.documents.document import document
 from pinjoint.documents.models import load
 from pinjoint.editor.scenes.form import FormScene
@@ -192,3 +193,37 @@ def test_the_methods_of_courses_keep_one_set_of_units() -> None:
     assert any("kN" in text for text in texts(session))
     session.press("escape")
     assert units_on_screen() == "N mm"
+
+
+def test_single_units_and_decimals_are_chosen_in_a_list() -> None:
+    """By the mouse or by keys; what is chosen replaces what was of its kind, and a preset all."""
+    session = Session.open("isostatic")
+    deeds = {
+        "forces: N": "N",
+        "lengths: m": "N, m",
+        "digits: 3": "N, m, 3 digits",
+        "forces: MN": "m, 3 digits, MN",
+    }
+    for chosen, says in (deeds | {"all: N mm": "N mm"}).items():
+        session.press("ctrl+f2")
+        menu = session.view.menu
+        assert menu is not None
+        number = [entry.title for entry in menu.entries].index(chosen)
+        for _ in range(number + 1):
+            session.press("down")
+        session.press("return")
+        assert units_on_screen() == says
+    show_in("m, N, 3 digits")
+    session.press("ctrl+f2")
+    pressed = [entry.title for entry in session.view.menu.entries if entry.pressed]
+    assert pressed[:3] == ["lengths: m", "displacements: m", "forces: N"]
+    assert pressed[-1] == "digits: 3"
+    session.press("escape")
+    assert session.view.menu is None
+
+
+def test_single_units_are_remembered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(preferences.CONFIG_VARIABLE, str(tmp_path))
+    for kept, read in (("m, N, 3 digits", "m, N, 3 digits"), ("m, quarks", USUAL), (3, USUAL)):
+        preferences.remember("units", kept)
+        assert preferences.preferred("units") == read

@@ -7,12 +7,14 @@ from operator import attrgetter
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import LANGUAGES, language, speak, tr
-from pinjoint.components.units import PRESETS, show_in, units_on_screen
+from pinjoint.components.toolbar import Menu, Tool
+from pinjoint.components.units import PRESETS, SINGLE, is_shown, show_in, show_single, units_on_screen
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import saving
 from pinjoint.systems.input.actions import ACTIONS, EVERY, IN_PICTURES, LIVE, Perform, actions_of
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.help import help_pages
+from pinjoint.systems.render.ui.menu import pointed_at
 
 action = actions_of("View", EVERY, while_drawing=True)
 
@@ -64,6 +66,29 @@ def _next_units(context: Context, pixel: Vector) -> None:
     names = list(PRESETS)
     last = names.index(units_on_screen()) if units_on_screen() in names else -1
     show_in(names[(last + 1) % len(names)])
+    context.notice = tr("Units: {units}", units=units_on_screen())
+
+
+@action("units", "ctrl+f2", "choose single units and decimals", LIVE, in_menu=True)
+def _units(context: Context, pixel: Vector) -> None:
+    """The list of presets, and of single units, quantity by quantity."""
+    groups = [[(tr("all"), name, name == units_on_screen()) for name in PRESETS]]
+    groups += [[(tr(what), one.split()[0], is_shown(one)) for one in some] for what, some in SINGLE.items()]
+    tools = (
+        (Tool("show units", f"{what}: {one}", pressed=now) for what, one, now in group) for group in groups
+    )
+    context.view.menu = Menu(tr("Units"), tuple(map(tuple, tools)), pixel, pointed=pixel)
+
+
+@action("show units", where=LIVE, in_menu=True)
+def _show_units(context: Context, pixel: Vector) -> None:
+    """Those of the entry that was clicked, or that keys have come to."""
+    view, every = context.view, [*PRESETS, *(one for group in SINGLE.values() for one in group)]
+    chosen = every[
+        pointed_at(view, load_theme(view.theme), view.pixel) if view.pressed is None else int(view.pressed.item)
+    ]
+    view.menu = None
+    (show_in if chosen in PRESETS else show_single)(chosen)
     context.notice = tr("Units: {units}", units=units_on_screen())
 
 
