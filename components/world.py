@@ -20,7 +20,7 @@ from pinjoint.components.handle import Handle, set_entity
 from pinjoint.components.language import joined, tr
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.table import Table, flags, grown, table_of
-from pinjoint.components.wording import as_said, cut, missing
+from pinjoint.components.wording import as_said, cut, missing, quoted
 
 H = TypeVar("H", bound=Handle)
 
@@ -188,7 +188,12 @@ class World:
 
     def _ids(self, handles: Collection[Handle]) -> list[int]:
         """The esper ids of entities. Raises LookupError for handles of another model, whose ids mean others here."""
-        ids = [handle.entity for handle in handles if handle._world() is self]
+        try:
+            ids = [handle.entity for handle in handles if handle._world() is self]
+        except AttributeError:
+            wrong = next(one for one in handles if not isinstance(one, Handle))
+            said = tr("{value} is no element; give one, such as rods['AB'].", value=quoted(wrong))
+            raise TypeError(said) from None
         if len(ids) < len(handles):
             other = next(handle for handle in handles if handle._world() is not self)
             raise NotFound(
