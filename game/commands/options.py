@@ -143,7 +143,9 @@ def add_analysis(parser: argparse.ArgumentParser) -> None:
 def add_envelope(parser: argparse.ArgumentParser) -> None:
     """Add the options of envelopes in statics, of combinations or of a force along a path."""
     flag(parser, "--envelope", "of statics: the least and the most in all combinations of load cases")
-    option(parser, "--path ROD", "the same while one force of 1 kN downwards moves along these rods", nargs="+")
+    option(
+        parser, "--path ROD", "the same while a force, settings.moving_force, moves along these rods", nargs="+"
+    )
 
 
 def path_of(options: argparse.Namespace, model: Model) -> list[str] | None:

@@ -18,7 +18,7 @@ from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.theory import EXACT
-from pinjoint.components.wording import cut, missing
+from pinjoint.components.wording import brief, cut, missing
 from pinjoint.systems.statics.equations import AXES, SOFT, Array, Structure, normalised, upright
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.explain import describe_motion, rod_names
@@ -87,7 +87,7 @@ class Goal:
         return cls(value, (particle.row, direction))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Curve:
     """Equilibria in order along a path: load_factor (k,), displacement (k, n, 2) in m, axial_force (k, rods) in kN.
 
@@ -97,6 +97,8 @@ class Curve:
     has as many points as were asked for, or its path was lost, before the goal. events: plastic hinges, limit points and
     bifurcations on the way, in order.
     """
+
+    __repr__ = brief
 
     load_factor: Array
     displacement: Array
