@@ -138,7 +138,7 @@ def _parser() -> Parser:
     option(
         shape,
         "--influence NAME",
-        "also draw an influence line: of AB, AB.start, AB.end, AB.shear, AB.M@1.5 (also N, V; 50 %%), A.y or B.rotation",
+        "also draw an influence line: of AB, AB.start, AB.end, AB.shear, AB.M@1.5 (also N, V; 50 %), A.y or B.rotation",
     )
     add_envelope(parser)
     option(parser, "--theme", "the colours; default light", choices=theme_names(), default="light")
@@ -181,7 +181,7 @@ def _check_static(options: argparse.Namespace) -> None:
     option = "--theory" if options.theory is not None else shapes[options.undeformed]
     option = option or "--path" * bool(options.path) or "--envelope" * options.envelope
     if option and not options.static:
-        raise UsageError("{option} works only together with --static; add it.", option=option)
+        raise UsageError("{option} works only together with {other}; add it.", option=option, other="--static")
     moving = options.until_rest or options.at is not None or options.output.lower().endswith(".gif")
     if options.static and moving:
         raise UsageError("--static: nothing moves in statics; leave out --until-rest, --at and .gif.")

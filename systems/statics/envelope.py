@@ -26,7 +26,7 @@ from pinjoint.components.rod import Rod
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.spans import Curves, Kinks, extremes
 from pinjoint.components.theory import FIRST_ORDER
-from pinjoint.components.wording import as_said, missing
+from pinjoint.components.wording import as_said, brief, missing
 from pinjoint.components.world import Shown
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest, of_rods
 from pinjoint.systems.statics.events import NoEquilibrium
@@ -197,15 +197,17 @@ class Extreme(NamedTuple):
     combination: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Envelope:
     """Bounds of what k combinations do, those that are in equilibrium; without: of the others, why not. length: of rods, m.
 
     shares: by letter N, V, M, of the lengths of rods, stations along each, ascending, the last perhaps several times,
     (rods, s); forces: bounds there, (2, rods, s). reaction, displacement: with rotations as third part, (2, n, 3). curves:
-    of forces along all rods in the first combination, the second, … path: the rods along which a force of 1 kN moves, whose
-    positions are the combinations; () of load cases.
+    of forces along all rods in the first combination, the second, … path: the rods along which a force
+    (kN, downwards) moves, whose positions are the combinations; () of load cases.
     """
+
+    __repr__ = brief
 
     combinations: tuple[str, ...]
     without: Mapping[str, str]
@@ -216,20 +218,31 @@ class Envelope:
     displacement: Bounds
     curves: Mapping[str, Curves]
     path: tuple[str, ...] = ()
+    force: float = 1.0
 
     @classmethod
     def of(
-        cls, model: Model, names: Iterable[str], theory: str, factors: Sequence[float], permanent: Array
+        cls,
+        model: Model,
+        names: Iterable[str],
+        theory: str,
+        factors: Sequence[float],
+        permanent: Array,
+        path: Sequence[str] = (),
     ) -> Envelope:
         """That of some combinations of a model, all if none are named, by a theory, through load factors, of which the last
-        counts. permanent: plastic strains and rotations at the beginning, (rods, 3). Raises ValueError, and NoEquilibrium
-        where none has a solution.
+        counts; or of a force along a path of rods. permanent: plastic strains and rotations at the beginning, (rods, 3).
+        Raises ValueError, LookupError of rods, and NoEquilibrium where none has a solution.
         """
+        if path:
+            return cls._under_moving_force(model, path)
         known = model.settings.combinations
         for name in names:
             if name not in known:
                 raise FieldError(missing(tr("combinations"), name, known))
         chosen = {name: known[name] for name in list(names) or known}
+        if not model.rods.count:
+            raise FieldError("The model has no rods, along which an envelope would be; draw some.")
         if not chosen:
             raise FieldError("The model has no combinations; give it some in settings.combinations.")
         parts: dict[str, States] = {}
@@ -271,16 +284,16 @@ class Envelope:
         return cls(solved, without, length, stations, forces, reaction, displacement, found.forces)
 
     @classmethod
-    def under_moving_force(cls, model: Model, path: Sequence[str]) -> Envelope:
-        """That of one force of 1 kN downwards that moves along these rods, alone and by first-order theory; "combinations"
-        are where it stands. Raises LookupError, and NoEquilibrium of a mechanism.
-        """
+    def _under_moving_force(cls, model: Model, path: Sequence[str]) -> Envelope:
+        """That of the model's moving force along these rods, alone and by first-order theory; "combinations" are where it
+        stands."""
         copy, rows = model.undeformed_copy(), [model.rods[name].row for name in path]
         copy.delete([*copy.loads, *copy.span_loads])
         length, shares = model.rods.original_length[rows], np.linspace(0.0, 1.0, POSITIONS + 1)
         places = np.outer(length, np.clip(shares, _BESIDE, 1.0 - _BESIDE)).ravel()
         cases, on = [str(number) for number in range(len(places))], np.repeat(rows, len(shares))
-        copy.create(SpanLoad, len(places), rod=on, start=places, force=(0.0, -1.0), case=cases)
+        force = 0.0, -float(model.settings.moving_force)
+        copy.create(SpanLoad, len(places), rod=on, start=places, force=force, case=cases)
         copy.settings.combinations = {case: {case: 1.0} for case in cases}
         found = cls.of(copy, (), FIRST_ORDER, (1.0,), np.zeros((model.rods.count, 3)))
         told = [
@@ -289,20 +302,23 @@ class Envelope:
             for x in size * shares
         ]
         stands = tuple(told[int(case)] for case in found.combinations)
-        return replace(found, combinations=stands, path=tuple(path))
+        return replace(found, combinations=stands, path=tuple(path), force=-force[1])
 
     @property
     def said(self) -> str:
         """Of what it is."""
         if self.path:
             return tr(
-                "envelope of 1 kN downwards that moves along {rods}",
+                "envelope of {force} downwards that moves along {rods}",
+                force=written.stated(self.force, "kN"),
                 rods=listed([as_said(Rod.noun, name) for name in self.path]),
             )
         return tr("envelope of {names}", names=listed(self.combinations))
 
     def extremes(self, quantity: str, row: int) -> tuple[Extreme, Extreme]:
         """The least and the most of "N", "V" or "M" along a rod."""
+        if quantity not in self.forces:
+            raise FieldError(missing(tr("diagrams"), quantity, self.forces))
         bounds, shares = self.forces[quantity], self.shares[quantity][row]
         length, found = float(self.length[row]), []
         for side, at in enumerate((bounds.values[0, row].argmin(), bounds.values[1, row].argmax())):

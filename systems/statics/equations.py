@@ -274,6 +274,10 @@ class Structure:
         """Rods that may buckle by themselves."""
         return np.isfinite(self.buckling_load)
 
+    def buckled(self, slack: Flags) -> Flags:
+        """Of what is slack, the struts, in its shape."""
+        return slack & (self.struts if slack.ndim == 1 else self.struts[:, None])
+
     @cached_property
     def softening(self) -> Array:
         """What remains of the stiffness EA of one-sided rods once they have given way: of struts P/2, in exact geometry."""
@@ -533,13 +537,14 @@ class Structure:
         """The energy (kN·m) beside which that of a motion is round-off: of rods that resist it with all they have.
 
         Where members bend, moving across their axes takes far less than along them, and the more so the more rods divide
-        them: then of its parts along both axes, without regard to their signs.
+        them: then of its parts along both axes, without regard to their signs; of bars, of all of it.
         """
         if self.bending is None:
             return float(vector @ (self.weight * vector))
         field, axis = self.spread(vector), np.abs(response.axis)
         change, turns = np.abs(self.relative(field)), np.abs(self.turns(field))
-        along = (axis * change).sum(axis=1)
+        bar = ~self.bending.end_stiffness.any(axis=1)
+        along = np.where(bar, np.hypot(*change.T), (axis * change).sum(axis=1))
         leaning = (axis * change[:, ::-1]).sum(axis=1) / np.where(
             response.length > 0.0, response.length, np.inf
         )
