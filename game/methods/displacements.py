@@ -88,7 +88,7 @@ class DisplacementTables(Tables):
         angle = np.where(turned_supports(self.model), self.model.particles.support_angle, 0.0)
         for end in (0, 1):
             forces[:, end] = turned(forces[:, end], angle[rods.between[:, end]])
-        return forces.reshape(rods.count, -1)
+        return forces.reshape(solution.members.shape[:2])
 
     def shares(self, i: int, j: int) -> Array:
         """What every rod adds to an entry of K, or behind its last column to F (rods,)."""
