@@ -238,7 +238,7 @@ def _of_canvas(context: Context) -> Groups:
         [*of_mods(draw=False)],
         ["fit", "new grid", "next grid", "toggle legend", "next theme", "next language"],
         [
-            *("environment", "next units", "units", "toggle full screen", "toggle help"),
+            *("environment", "units", "toggle full screen", "toggle help"),
             *("screenshot", "picture as svg", "picture as pdf", "sheet"),
         ],
     ]
