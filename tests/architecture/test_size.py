@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_501,
+    "lines": 72_505,
     "files": 386,
     "names": 4_005,  # functions, classes and constants of modules
     "public names": 2_387,
     "numbers": 1_570,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 60_500,
+    "lines of tests": 60_505,
 }
 
 
