@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_505,
+    "lines": 72_537,
     "files": 386,
-    "names": 4_005,  # functions, classes and constants of modules
-    "public names": 2_387,
+    "names": 4_007,  # functions, classes and constants of modules
+    "public names": 2_388,
     "numbers": 1_570,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 60_505,
+    "lines of tests": 60_650,
 }
 
 
