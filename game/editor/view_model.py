@@ -25,6 +25,7 @@ from pinjoint.components.view import (
     Readout,
     Status,
     Trails,
+    drawn_at,
     drawn_places,
     drawn_positions,
 )
@@ -72,14 +73,13 @@ def follow(context: Context) -> None:
     view = context.view
     if view.followed is None:
         return
-    particle, (x, y) = view.followed
+    particle, before = view.followed
     if not particle.exists or particle.world is not context.model:
         view.followed = None
         return
-    here_x, here_y = drawn_positions(context.model)[particle.row].tolist()
-    centre = view.camera.centre
-    view.camera.centre = centre[0] + here_x - x, centre[1] + here_y - y
-    view.followed = particle, (here_x, here_y)
+    here, centre = drawn_at(context.model, particle), view.camera.centre
+    view.camera.centre = centre[0] + here[0] - before[0], centre[1] + here[1] - before[1]
+    view.followed = particle, here
 
 
 def _trace(context: Context) -> None:
