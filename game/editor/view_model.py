@@ -40,11 +40,10 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
 from pinjoint.systems.edit.rods import is_rigid
 from pinjoint.systems.forms.results import along, told
-from pinjoint.systems.input.actions import ACTIONS, LIVE
+from pinjoint.systems.input.actions import ACTIONS, LIVE, PROPERTIES
 from pinjoint.systems.render.ui.overlays import BAR
 
 READYING = marked("Getting ready for this model, once: about {seconds:.0f} s left.")
-STILL = ("pause", "properties")  # scenes of the model in which time stands still
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_WATCHED = 2000  # particles, up to which it is told that they left the picture
 MOST_NAMED = 3  # of these, by their names
@@ -178,7 +177,7 @@ def _show_readouts(context: Context) -> None:
 def _unsettled(context: Context) -> str:
     """The sentence that what was settled was edited since and is in equilibrium no more, "" if it is."""
     document = context.document
-    if context.scene not in STILL or document.is_undeformed or document.assessment.balanced:
+    if context.scene not in (PAUSE, PROPERTIES) or document.is_undeformed or document.assessment.balanced:
         return ""
     return tr(
         "The model was edited and is no longer in equilibrium. Press E for the new equilibrium (right click: settle)."

@@ -19,7 +19,6 @@ from pinjoint.documents.models import replace
 from pinjoint.sweeps.plan import RECORDED, Plan
 from pinjoint.sweeps.variation import INSTALL, SweepError
 
-SUFFIXES = (".csv", ".parquet")
 _NEEDED = {".parquet": "pyarrow", ".png": "matplotlib"}
 _MOST_PANELS = 12
 MOST_LINES = 12
@@ -161,7 +160,7 @@ def _short(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def check_output(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
+def check_output(path: Path, suffixes: Sequence[str] = (".csv", ".parquet")) -> None:
     """Refuse what could not be written in the end. Raises SweepError."""
     if path.suffix not in suffixes:
         endings = ", ".join(suffixes)
