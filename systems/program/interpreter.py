@@ -27,6 +27,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from enum import IntEnum
 from itertools import count
+from operator import attrgetter
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
@@ -404,11 +405,6 @@ _Defined = ast.FunctionDef | ast.Lambda
 _parsed: dict[str, dict[int, list[_Defined]]] = {}  # by file, what of it is not rewritten yet
 
 
-def _at_top(module: ast.Module) -> Iterable[ast.AST]:
-    """The statements of a module, among which most kernels are; looking through all of it takes ten times as long."""
-    return module.body
-
-
 def _definitions(file: str, nodes: Callable[[ast.Module], Iterable[ast.AST]]) -> dict[int, list[_Defined]]:
     """The functions among nodes of a file, by the line on which they, or their decorators, begin."""
     linecache.checkcache(file)
@@ -430,7 +426,8 @@ def _definitions(file: str, nodes: Callable[[ast.Module], Iterable[ast.AST]]) ->
 def _definition(plain: Any) -> ast.FunctionDef:
     """The definition of a function, to be changed: one that was changed before is read again."""
     code, file = plain.__code__, plain.__code__.co_filename
-    for nodes in (None, _at_top, ast.walk):
+    at_top = attrgetter("body")  # where most kernels are; looking through all of a module takes ten times as long
+    for nodes in (None, at_top, ast.walk):
         if nodes is not None:
             _parsed[file] = _definitions(file, nodes)
         there = _parsed.get(file, {}).get(code.co_firstlineno, [])
