@@ -28,7 +28,7 @@ from pinjoint.components.language import marked, several, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.table import fields_of
-from pinjoint.components.theory import EXACT, FIRST_ORDER
+from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.paths import ENERGIES
 from pinjoint.systems.collision.impacts import Impacts
 

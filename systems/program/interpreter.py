@@ -426,7 +426,7 @@ def _definitions(file: str, nodes: Callable[[ast.Module], Iterable[ast.AST]]) ->
 def _definition(plain: Any) -> ast.FunctionDef:
     """The definition of a function, to be changed: one that was changed before is read again."""
     code, file = plain.__code__, plain.__code__.co_filename
-    at_top = attrgetter("body")  # where most kernels are; looking through all of a module takes ten times as long
+    at_top = attrgetter("body")  # where most kernels are; to look through all takes ten times as long
     for nodes in (None, at_top, ast.walk):
         if nodes is not None:
             _parsed[file] = _definitions(file, nodes)
