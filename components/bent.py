@@ -73,13 +73,16 @@ class Axes:
         Cubics by the slopes of their ends, and what acts between them adds, as if they were clamped. In small displacements
         both together are exact.
         """
-        rods, state = model.rods, _state(model, rows)
-        particles, scale = model.particles, drawn_scale(model) if scale is None else scale
-        ends = rods.between[rows].astype(np.intp)
-        drawn = particles.position[ends] + particles.displacement[ends] * scale
-        drift = _drift(state)
-        drift = None if drift is None else drift.times(scale)
-        return cls(drawn[:, 0], drawn[:, 1], state.left, state.bow.times(scale), drift)
+        (state, _), known = _states(model), model.bent[2]
+        scale = drawn_scale(model) if scale is None else scale
+        if scale not in known:
+            particles, ends, drift = model.particles, model.rods.between.astype(np.intp).T, _drift(state)
+            with np.errstate(invalid="ignore"):  # see there
+                start, end = (particles.position + particles.displacement * scale)[ends]
+                drift = None if drift is None else drift.times(scale)
+                known[scale] = cls(start, end, state.left, state.bow.times(scale), drift)
+        every: Axes = known[scale]
+        return every.some(rows)
 
     @classmethod
     def moved(cls, parts: Parts, places: Array, displacement: Array, rotation: Array) -> Axes:
@@ -115,8 +118,8 @@ class Axes:
     def _away(self, bow: Curves, drift: Curves | None, shares: Array) -> Array:
         found: Array = bow.at(shares)[..., None] * self.left[:, None]
         if drift is not None:
-            ahead = np.stack([self.left[:, 1], -self.left[:, 0]], axis=1)
-            found = found + drift.at(shares)[..., None] * ahead[:, None]
+            ahead = self.left[:, None, ::-1] * [1.0, -1.0]
+            found = found + drift.at(shares)[..., None] * ahead
         return found
 
     @property
@@ -242,11 +245,11 @@ def _state(model: Model, rows: Rows) -> _State:
 def _states(model: Model) -> tuple[_State, Kinks]:
     """Those of all rods, and what acts between their ends."""
     found: tuple[_State, Kinks]
-    revision, found = model.bent
+    revision, found, _ = model.bent
     if revision != model.revision:  # a picture asks nine times
         with np.errstate(invalid="ignore"):  # of rods whose ends are nowhere, which are not drawn
             found = _found(model)
-        model.bent = model.revision, found
+        model.bent = model.revision, found, {}
     return found
 
 

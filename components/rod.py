@@ -282,7 +282,7 @@ class Rod(Handle):
         "kN·m", doc="Moments on its ends, counter-clockwise; those of its dampers are not included."
     )
     end_axial_force: Field[Vector] = by_end(
-        "kN", doc="Axial force at each end; the axial force of the rod is the mean of the two."
+        "kN", doc="Axial force at each end; that of the rod is its mean along it."
     )
     shear: Field[Vector] = by_end(
         "kN", doc="At its ends: force of the part before a cut on the part beyond it, positive to the left."

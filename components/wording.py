@@ -9,7 +9,8 @@ import difflib
 import json
 import re
 import reprlib
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from dataclasses import fields, is_dataclass
 from keyword import iskeyword
 from typing import Any
 from unicodedata import normalize
@@ -94,3 +95,19 @@ def as_said(noun: str, name: str) -> str:
     """A name as it is read: one that nobody gave, such as "rod 7", in the present language."""
     its, _, number = name.rpartition(" ")
     return joined([tr(noun), number]) if its == noun and number.isdecimal() else name
+
+
+def brief(result: Any) -> str:
+    """The repr of a result that a script looks at: its fields in a line, and of arrays and the like only what they are."""
+
+    def said(value: Any) -> str:
+        if getattr(value, "shape", ()):
+            return f"array {value.shape}"
+        if isinstance(value, Mapping):
+            return f"{{{', '.join(f'{key!r}: {said(of)}' for key, of in value.items())}}}"
+        if isinstance(value, tuple):
+            return f"({', '.join(map(said, value[:2]))}{', …' * (len(value) > 2)})"
+        return brief(value) if is_dataclass(value) else repr(value)
+
+    told = [f"{field.name}={said(getattr(result, field.name))}" for field in fields(result) if field.repr]
+    return f"{type(result).__name__}({', '.join(told)})"

@@ -20,7 +20,7 @@ from pinjoint.components.handle import Handle, set_entity
 from pinjoint.components.language import joined, tr
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.table import Table, flags, grown, table_of
-from pinjoint.components.wording import as_said, cut, missing
+from pinjoint.components.wording import as_said, cut, missing, quoted
 
 H = TypeVar("H", bound=Handle)
 
@@ -92,7 +92,7 @@ class World:
         self.changing = False
         self.solution: Solution | None = None
         self._shown_since = 0  # revision at which the solution took the place of the state, or gave it back
-        self.bent: tuple[int, Any] = -1, ()  # how rods are bent, found at this revision (bent.py)
+        self.bent: tuple[int, Any, Any] = -1, (), {}  # how rods are bent, found at this revision (bent.py)
         self.sound = -1  # the revision up to which all numbers can be computed with (numeric_range.py)
         self._naming: Callable[[int, str], str] | None = None
         self._open: list[Command] | None = None
@@ -188,7 +188,12 @@ class World:
 
     def _ids(self, handles: Collection[Handle]) -> list[int]:
         """The esper ids of entities. Raises LookupError for handles of another model, whose ids mean others here."""
-        ids = [handle.entity for handle in handles if handle._world() is self]
+        try:
+            ids = [handle.entity for handle in handles if handle._world() is self]
+        except AttributeError:
+            wrong = next(one for one in handles if not isinstance(one, Handle))
+            said = tr("{value} is no element; give one, such as rods['AB'].", value=quoted(wrong))
+            raise TypeError(said) from None
         if len(ids) < len(handles):
             other = next(handle for handle in handles if handle._world() is not self)
             raise NotFound(
@@ -350,7 +355,8 @@ class World:
         derivation = self._derivations.get(name)
         if derivation is None or (known := self._derived_at[derivation]) == self.revision:
             return
-        if max(self.newest(*self._roots_of(derivation)), self.structure, self._shown_since) > known:
+        roots = self._roots_of(derivation)
+        if max(self.newest(*roots), self.structure, self._shown_since * (Role.STATE in roots)) > known:
             new_rows = (self.tables[target.split(".")[0]].structure for target in derivation.targets)
             sources = map(self.version, derivation.sources)
             if any(changed > known for changed in itertools.chain(sources, new_rows)):

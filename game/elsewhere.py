@@ -43,7 +43,8 @@ UNITS = {unit.name: unit for unit in (RASTER, PARTING, EVENTS, HORIZONS, PILES, 
 START = "import sys; sys.path[:] = sys.argv[1:]; from pinjoint.elsewhere import main; main()"
 INTERVAL = 0.05  # s between two looks
 # What edits and steps need, which takes several frames to import.
-LIBRARIES = ("pinjoint.systems.plasticity.kernels", "scipy.spatial", "scipy.sparse.linalg")
+_SYSTEMS = ("pinjoint.systems.plasticity.kernels", "pinjoint.systems.statics.buckling")
+LIBRARIES = (*_SYSTEMS, "scipy.spatial", "scipy.sparse.linalg")
 _ENDING = 0.5  # s that what a thread is at may take before the window goes without it
 
 _HOME = Path(__file__).parent
@@ -267,7 +268,8 @@ def problem_of(job: Job, document: bytes) -> str:
         if job[0] in UNITS:
             UNITS[job[0]].load()
         else:
-            make_program(*parts_of(job, document)).module.load()
+            program = make_program(*parts_of(job, document))  # which loading calls
+            program.module.load()
     except Exception as error:  # numba raises many kinds
         return in_a_line(error)
     return cache.TROUBLE[0].partition(". ")[0] if cache.TROUBLE else ""

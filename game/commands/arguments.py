@@ -98,7 +98,7 @@ def option(
     name, _, value = usage.partition(" ")
     if "action" not in how or value:
         how = {"metavar": value or None, "type": kind} | how
-    to.add_argument(name, help=tr(about), **how)
+    to.add_argument(name, help=tr(about).replace("%", "%%"), **how)  # argparse takes % for a place to fill
 
 
 def flag(to: argparse._ActionsContainer, name: str, about: str) -> None:

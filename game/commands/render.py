@@ -138,7 +138,7 @@ def _parser() -> Parser:
     option(
         shape,
         "--influence NAME",
-        "also draw an influence line: of AB, AB.start, AB.end, AB.shear, AB.M@1.5 (also N, V; 50 %%), A.y or B.rotation",
+        "also draw an influence line: of AB, AB.start, AB.end, AB.shear, AB.M@1.5 (also N, V; 50 %), A.y or B.rotation",
     )
     add_envelope(parser)
     option(parser, "--theme", "the colours; default light", choices=theme_names(), default="light")

@@ -261,14 +261,15 @@ def collapse_shapes(model: Model, found: LimitLoad | None = None) -> list[Shape]
 def last_motion(model: Model, settlement: Settlement) -> Shape | None:
     """The motion into which the last state passes that statics finds; None where that is an equilibrium.
 
-    In first order nothing bends in it: rods stay straight between hinges, plastic ones included.
+    Ends that yield turn as hinges do. In first order nothing bends in it: rods stay straight between hinges.
     """
     motions = [event.motion for event in settlement.events if event.motion is not None]
     if settlement.final.balanced or not motions:
         return None
     said = tr("A mechanism: nothing resists this motion")
-    straight = model.settings.theory == FIRST_ORDER
-    parts = replace(Parts.of(model), fixity=0.0 * model.rods.fixity) if straight else None
+    straight, yields = model.settings.theory == FIRST_ORDER, settlement.final.hinge_yielding
+    kept = replace(Parts.of(model), fixity=np.where(yields | straight, 0.0, model.rods.fixity))
+    parts = kept if straight or yields.any() else None
     return _shape(model, said, motions[-1], settlement.final.displacement, parts=parts)
 
 

@@ -53,11 +53,13 @@ MOST_FLASHES = 500  # impacts marked at a time
 
 
 def offer_tools(context: Context) -> None:
-    """Let toolbar, sliders and help show what can be done now; what is not seen stays as it was."""
+    """Let toolbar, sliders and help show what can be done now; what is not seen, or pressed in a drag, stays as it was."""
     view = context.view
     view.keys = tuple(ACTIONS.help_lines(context.scene)) if view.help else ()
     if not context.scenes.active.covers(context):
-        view.toolbar, view.sliders = toolbar_of(context), slider_stack(context)
+        view.sliders = slider_stack(context)
+        if not isinstance(context.gesture, Placing):
+            view.toolbar = toolbar_of(context)
 
 
 def exaggerate(context: Context) -> None:
@@ -105,7 +107,7 @@ def show(context: Context, elapsed: float) -> None:
     view.forces_known = solved or context.readiness.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
-    lately = context.document.chronicle.told(elapsed) if context.mode in LIVE else ""
+    lately = context.document.chronicle.told(elapsed) if context.mode in LIVE and not solved else ""
     offer = None
     if context.notice:
         lasting = [context.notice]

@@ -215,7 +215,7 @@ def plan_of(
 def _read_measures(model: Model, texts: Iterable[str]) -> tuple[Measure, ...]:
     """The measures of a model that paths, or lists of paths with commas, name. Raises SweepError."""
     measures: dict[str, Measure] = {}
-    for text in texts:
+    for text in [texts] if isinstance(texts, str) else texts:
         for path in _BETWEEN.split(text):
             measures |= {measure.column: measure for measure in _measured(model, path.strip())}
     if not measures:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
 from dataclasses import dataclass
 from typing import Any
 
@@ -101,7 +101,7 @@ def _covers(path: str, one: str) -> bool:
 
 
 def _listed(path: str, values: Sequence[Value]) -> str:
-    if isinstance(values, str) or len(values) == 0:
+    if isinstance(values, str) or not isinstance(values, Sized) or len(values) == 0:
         raise SweepError("{path}: give it a list of at least one value.", path=path)
     return ",".join(as_text(np.asarray(value).item()) for value in values)
 

@@ -15,6 +15,7 @@ import pickle
 import sys
 import threading
 import time
+import weakref
 from collections.abc import Callable, Iterable, Mapping
 from enum import Enum
 from functools import cached_property
@@ -93,8 +94,8 @@ class GeneratedModule:
 
     Both compute the same bits, so that one may follow the other between any two calls. Nothing proves that of kernels that
     others wrote: what calls some is compiled before its first call, unless nothing may be. functions: what Python may
-    call, by name, as declared. spent: time that interpreting took in this process (s). portion: of what there is to do,
-    such as steps, for one interpreted call, so that another form may soon follow.
+    call, by name, as declared. users: programs that call it. spent: time that interpreting took in this process (s).
+    portion: of what there is to do, such as steps, for one interpreted call, so that another form may soon follow.
     """
 
     def __init__(
@@ -113,6 +114,7 @@ class GeneratedModule:
         self.refusal = ""
         self._contents = contents
         self._needs = needs
+        self.users: weakref.WeakSet[Any] = weakref.WeakSet()  # the module lives longer
         self.warm_up = warm_up
         self._form: Any = None
         self.portion = 1

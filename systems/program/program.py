@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import weakref
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -127,8 +126,9 @@ class Program:
         self._state_revision = -1
         self._changes = _by_table_and_role(model, (*self.motion, *self._writer.written.values()))
         self.bind()
-        present = weakref.ref(self)  # the module lives longer
-        self.module.warm_up = lambda: program._call_all() if (program := present()) is not None else None
+        users = self.module.users
+        users.add(self)
+        self.module.warm_up = lambda: [program._call_all() for program in [*users][:1]]
         check_plain_forms(self._writer.kernels)
         self.module.begin(self._rows("rods"))
         if not self.module.is_loaded:

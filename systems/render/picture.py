@@ -162,7 +162,8 @@ def _draw_arrows(sheet: Sheet, sides: NDArray[np.int64]) -> None:
         draw_enveloped_reactions(sheet, sheet.view.enveloped)
         return
     draw_span_loads(sheet)
-    draw_loads(sheet)
+    if not sheet.view.all_diagrams:
+        draw_loads(sheet)
     draw_velocities(sheet)
     draw_moments(sheet)
     draw_particle_diagrams(sheet, sides)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import math
+from collections import defaultdict
 from collections.abc import Iterable
 from functools import cache, lru_cache
 from importlib.resources import files
+from itertools import accumulate, takewhile
 from typing import Any, TypeVar
 
 T = TypeVar("T")
@@ -29,17 +31,17 @@ def text_width(text: str, size: int, weight: str = "regular") -> int:
     Every advance is rounded to whole pixels, as hinted fonts are drawn. A character that the font lacks
     counts 0.7 em.
     """
-    return max(
-        sum(_character_width(character, size, weight) for character in line) for line in text.split("\n")
-    )
+    wide = _widths(size, weight)
+    return max(sum(map(wide.__getitem__, line)) for line in text.split("\n"))
 
 
 @cache
-def _character_width(character: str, size: int, weight: str) -> int:
+def _widths(size: int, weight: str) -> defaultdict[str, int]:
+    """The width in pixels of each character at a font size."""
     metrics = _metrics()[weight]
     em = float(metrics["units_per_em"])
-    advance = float(metrics["advance"].get(character, 0.7 * em))
-    return math.floor(advance * size / em + 0.5)
+    known = {one: math.floor(advance * size / em + 0.5) for one, advance in metrics["advance"].items()}
+    return defaultdict(lambda: math.floor(0.7 * em * size / em + 0.5), known)
 
 
 @cache
@@ -69,13 +71,8 @@ def shortened(text: str, width: float, size: int, weight: str = "regular") -> st
 
 def fitting(characters: Iterable[str], width: float, size: int, weight: str = "regular") -> int:
     """How many characters of a text, from the first one, fit into a width; none into less than none."""
-    count, taken = 0, 0
-    for character in characters:
-        taken += _character_width(character, size, weight)
-        if taken > width:
-            break
-        count += 1
-    return count
+    ends = accumulate(map(_widths(size, weight).__getitem__, characters))
+    return sum(1 for _ in takewhile(width.__ge__, ends))
 
 
 @lru_cache(maxsize=2048)  # a form asks for the heights of all that it could explain, several times a frame

@@ -22,6 +22,7 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.particle import supported
 from pinjoint.components.rod import bears_between, extensible_elsewhere
+from pinjoint.components.wording import brief
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import needed_parts
@@ -46,7 +47,7 @@ STEP = 1e-5  # change of the rods, as a share, over which a derivative along the
 STRAINED = 0.1  # strain at a critical factor above which no material is still elastic
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Buckling:
     """factors: critical load factors λ > 0, ascending, (k,). modes: (k, n, 2), where members bend with rotations (n, 3),
     the largest motion of each 1.
@@ -61,6 +62,8 @@ class Buckling:
     notes: sentences about what the factors leave out. message: why there is none; "" if there are some. coarse: rods are so
     compressed at the lowest factor that one cubic is too coarse for them: the factors are no answers but upper bounds.
     """
+
+    __repr__ = brief
 
     factors: Array
     modes: Array

@@ -20,6 +20,7 @@ from scipy.linalg import qr
 
 from pinjoint.components.model import Model
 from pinjoint.components.theory import FIRST_ORDER
+from pinjoint.components.wording import brief
 from pinjoint.systems.statics.equations import Array, Flags, Structure
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.force_method import real_structure
@@ -32,7 +33,7 @@ _LEAST = 1e-9  # of how a direction changes the length of an inextensible rod; l
 _LATER = 1.01  # times the first direction, the last is preferred as one that is taken along
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Solution(Superposition):
     """K Δ = F of n unknowns, in m, rad, kN, kN·m; they are free directions of particles.
 
@@ -40,6 +41,8 @@ class Solution(Superposition):
     along the axes of supports, (rods, 2 × width, 2 × width). ways: how these move by units of unknowns, (rods, …, n):
     1 where one is that unknown; where inextensible rods take others along, more.
     """
+
+    __repr__ = brief
 
     stiffness: Array
     load: Array

@@ -26,7 +26,7 @@ from pinjoint.components.rod import Rod
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.spans import Curves, Kinks, extremes
 from pinjoint.components.theory import FIRST_ORDER
-from pinjoint.components.wording import as_said, missing
+from pinjoint.components.wording import as_said, brief, missing
 from pinjoint.components.world import Shown
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest, of_rods
 from pinjoint.systems.statics.events import NoEquilibrium
@@ -197,7 +197,7 @@ class Extreme(NamedTuple):
     combination: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Envelope:
     """Bounds of what k combinations do, those that are in equilibrium; without: of the others, why not. length: of rods, m.
 
@@ -206,6 +206,8 @@ class Envelope:
     of forces along all rods in the first combination, the second, … path: the rods along which a force of 1 kN moves, whose
     positions are the combinations; () of load cases.
     """
+
+    __repr__ = brief
 
     combinations: tuple[str, ...]
     without: Mapping[str, str]
@@ -230,6 +232,8 @@ class Envelope:
             if name not in known:
                 raise FieldError(missing(tr("combinations"), name, known))
         chosen = {name: known[name] for name in list(names) or known}
+        if not model.rods.count:
+            raise FieldError("The model has no rods, along which an envelope would be; draw some.")
         if not chosen:
             raise FieldError("The model has no combinations; give it some in settings.combinations.")
         parts: dict[str, States] = {}
@@ -303,6 +307,8 @@ class Envelope:
 
     def extremes(self, quantity: str, row: int) -> tuple[Extreme, Extreme]:
         """The least and the most of "N", "V" or "M" along a rod."""
+        if quantity not in self.forces:
+            raise FieldError(missing(tr("diagrams"), quantity, self.forces))
         bounds, shares = self.forces[quantity], self.shares[quantity][row]
         length, found = float(self.length[row]), []
         for side, at in enumerate((bounds.values[0, row].argmin(), bounds.values[1, row].argmax())):

@@ -274,7 +274,11 @@ class Structure:
         """Rods that may buckle by themselves."""
         return np.isfinite(self.buckling_load)
 
-    @property
+    def buckled(self, slack: Flags) -> Flags:
+        """Of what is slack, the struts, in its shape."""
+        return slack & (self.struts if slack.ndim == 1 else self.struts[:, None])
+
+    @cached_property
     def softening(self) -> Array:
         """What remains of the stiffness EA of one-sided rods once they have given way: of struts P/2, in exact geometry."""
         return np.where(self.struts & (not self.first_order), 0.5 * self.buckling_load / self.stiffness, 0.0)
@@ -297,7 +301,7 @@ class Structure:
         beyond: Array = -of_axes(response.elastic_force) - np.where(self.struts, self.buckling_load, np.inf)
         return np.maximum(beyond, 0.0) / self.stiffness
 
-    @property
+    @cached_property
     def _edge(self) -> Array:
         """The elastic force at which one-sided rods slacken, and struts buckle."""
         return np.where(self.struts, -self.buckling_load, 0.0)
@@ -472,10 +476,9 @@ class Structure:
         rate = self.elongation_rate(vector, response)
         if soft.ndim == 1 or self.bending is None or response.bent is None:
             return rate
-        field, (chord, slopes) = self.spread(vector), self._chord_rows(response)
-        ends = np.concatenate([field[self.ends[:, 0]], field[self.ends[:, 1]]], axis=1)
+        ends = self.spread(vector)[self.ends].reshape(-1, 6, 1)
         hessian = self._hessian(response, soft)
-        moment = (hessian[:, 2:] @ np.concatenate([chord, slopes], axis=1) @ ends[:, :, None])[:, :, 0]
+        moment = (hessian[:, 2:] @ self._ways(response) @ ends)[:, :, 0]
         moment += share * self.bending.carried(response.bent, response.axis, response.length, False)[0]
         turned = flows(hessian[:, 2:, 2:], moment, soft[:, 1:])
         moment = moment - (hessian[:, 2:, 2:] @ turned[:, :, None])[:, :, 0]
@@ -491,30 +494,19 @@ class Structure:
             return rate
         return np.column_stack([rate, self.slope_rates(self.spread(vector), response)])
 
-    def _chord_rows(self, response: Response) -> tuple[Array, Array]:
-        """Elongation and turning of the chord, and the slopes, of the coordinates of both ends, (rods, 2, 6) each."""
-        slopes = self._slopes_by_ends(response)
-        chord = np.zeros_like(slopes)
-        chord[:, 0, :2], chord[:, 0, 3:5] = -response.axis, response.axis
-        chord[:, 1], chord[:, 1, 2::3] = -slopes[:, 0], 0.0
-        return chord, np.where(self._rigid_ends[:, :, None], slopes, 0.0)
+    def _ways(self, response: Response) -> Array:
+        """What `Bending.ways` is, of these rods."""
+        assert self.bending is not None
+        return self.bending.ways(response.axis, response.length)
 
     def efforts(self, response: Response, parts: Flags, slack: Flags) -> tuple[Array, Array]:
         """What these of all that can yield, (rods, 3), of which nothing flows, have of forces by the unknowns (k, N), and by
         the deformations of each other (k, k)."""
-        chord, slopes = self._chord_rows(response)
-        hessian = self._hessian(response, slack)
-        by_ends = hessian[:, [0, 2, 3]] @ np.concatenate([chord, slopes], axis=1)
-        rod, part = np.nonzero(parts)
-        matrix = np.zeros((len(rod), *self.unknown.shape))
-        of_ends = self._by_supports(by_ends[rod, part][:, None], self.ends[rod])[:, 0].reshape(
-            -1, 2, self.width
-        )
-        for end in range(2):
-            matrix[np.arange(len(rod)), self.ends[rod, end]] = of_ends[:, end]
+        hessian, (rod, part) = self._hessian(response, slack), np.nonzero(parts)
         place = np.array([0, 2, 3])[part]
+        by_ends = (hessian[rod, place][:, None] @ self._ways(response)[rod])[:, 0]
         together = np.where(rod[:, None] == rod, hessian[rod[:, None], place[:, None], place], 0.0)
-        return matrix.reshape(len(rod), -1)[:, self.index], together
+        return self._in_full(by_ends, rod), together
 
     def slope_rates(self, field: Array, response: Response) -> Array:
         """Rates of the slopes of the rods' ends, (rods, 2), when all particles move at these rates."""
@@ -545,13 +537,14 @@ class Structure:
         """The energy (kN·m) beside which that of a motion is round-off: of rods that resist it with all they have.
 
         Where members bend, moving across their axes takes far less than along them, and the more so the more rods divide
-        them: then of its parts along both axes, without regard to their signs.
+        them: then of its parts along both axes, without regard to their signs; of bars, of all of it.
         """
         if self.bending is None:
             return float(vector @ (self.weight * vector))
         field, axis = self.spread(vector), np.abs(response.axis)
         change, turns = np.abs(self.relative(field)), np.abs(self.turns(field))
-        along = (axis * change).sum(axis=1)
+        bar = ~self.bending.end_stiffness.any(axis=1)
+        along = np.where(bar, np.hypot(*change.T), (axis * change).sum(axis=1))
         leaning = (axis * change[:, ::-1]).sum(axis=1) / np.where(
             response.length > 0.0, response.length, np.inf
         )
@@ -1006,8 +999,7 @@ class Structure:
         by_ends, ends = self._elongations(response), self.ends
         if self.bending is not None:
             rigid = self.bending.rigid
-            by_slopes = self._slopes_by_ends(response)
-            by_ends = np.concatenate([by_ends, by_slopes[rigid]])
+            by_ends = np.concatenate([by_ends, self._ways(response)[:, 2:][rigid]])
             ends = np.concatenate([ends, np.repeat(self.ends, rigid.sum(axis=1), axis=0)])
         by_ends = self._by_supports(by_ends, ends)
         found = spread_by_ends(by_ends, ends, len(self.position))[:, self.index]
@@ -1032,11 +1024,13 @@ class Structure:
 
     def elongations(self, response: Response, rows: Rows) -> Array:
         """The elongations of some rods from the unknowns, in full, (k, N)."""
+        return self._in_full(self._elongations(response)[rows], rows)
+
+    def _in_full(self, by_ends: Array, rows: Rows) -> Array:
+        """Of what is by the coordinates of both ends of these rods, (k, 2 × width), that by all unknowns, (k, N)."""
         matrix = np.zeros((len(rows), *self.unknown.shape))
-        of_ends = self._by_supports(self._elongations(response)[rows], self.ends[rows])
-        of_ends = of_ends.reshape(-1, 2, self.width)
-        for end in range(2):
-            matrix[np.arange(len(rows)), self.ends[rows, end]] = of_ends[:, end]
+        of_ends = self._by_supports(by_ends, self.ends[rows])
+        matrix[np.arange(len(rows))[:, None], self.ends[rows]] = of_ends.reshape(-1, 2, self.width)
         return matrix.reshape(len(rows), -1)[:, self.index]
 
     def _elongations(self, response: Response) -> Array:
@@ -1044,19 +1038,9 @@ class Structure:
         axis = response.axis
         if response.bent is None:
             return np.concatenate([-axis, axis], axis=1)
-        zero = np.zeros((len(axis), 1))
-        chord = np.concatenate([-axis, zero, axis, zero], axis=1)
-        return chord + (response.bent.bowed[:, :, None] * self._slopes_by_ends(response)).sum(axis=1)
-
-    def _slopes_by_ends(self, response: Response) -> Array:
-        """Slopes of the ends from the coordinates of both, (rods, 2, 6)."""
-        length = response.length
-        left = np.column_stack([-response.axis[:, 1], response.axis[:, 0]])
-        left = left / np.where(length > 0.0, length, np.inf)[:, None]
-        by_ends = np.zeros((len(length), 2, 6))
-        by_ends[:, :, :2], by_ends[:, :, 3:5] = left[:, None], -left[:, None]
-        by_ends[:, 0, 2] = by_ends[:, 1, 5] = 1.0
-        return by_ends
+        ways = self._ways(response)
+        found: Array = ways[:, 0] + (response.bent.bowed[:, :, None] * ways[:, 2:]).sum(axis=1)
+        return found
 
 
 def _held_by_rods(springs: Array, ends: Rows, bending: Bending | None) -> Flags:

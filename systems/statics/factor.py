@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from copy import copy
 from dataclasses import replace
 from functools import cache, cached_property
 from importlib.machinery import PathFinder
@@ -111,7 +112,8 @@ def shifted(matrix: Matrix, weight: Array, share: float = NO_STIFFNESS) -> Matri
     """K + share × weight."""
     if isinstance(matrix, np.ndarray):
         return matrix + np.diag(share * weight)
-    found = matrix.copy()
+    found = copy(matrix)  # a fifth of the time of its own
+    found.data = matrix.data.copy()
     own = found.indices == np.repeat(np.arange(len(weight)), np.diff(found.indptr))
     if np.count_nonzero(own) == len(weight):  # all of the diagonal is there: in a tenth of the time
         found.data[own] += share * weight

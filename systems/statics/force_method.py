@@ -31,6 +31,7 @@ from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.particle import in_support_axes, spring_stiffness, supported
 from pinjoint.components.spans import Kinks
 from pinjoint.components.theory import FIRST_ORDER
+from pinjoint.components.wording import brief
 from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
@@ -93,7 +94,7 @@ class Work:
         return np.where(np.abs(total) > ROUNDING * size, total, 0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Solution(Superposition):
     """The force method for m unknowns at once.
 
@@ -107,6 +108,8 @@ class Solution(Superposition):
 
     real, base: sets 1 and 2; units: set 3 of each unknown, under its unit force. work: what gap and flexibility are sums of.
     """
+
+    __repr__ = brief
 
     work: Work
     gap: Array

@@ -282,10 +282,10 @@ class Loading:
             raise self._lost(found)
         elif not (found.plastic_strain != start.plastic_strain).any():
             way, slack = found.displacement - start.displacement, found.response.slack
-            buckled = slack & self.path.structure.struts
+            buckled = self.path.structure.buckled(slack)
             raise self._collapse(buckled, way) if buckled.any() else self._mechanism(way, slack)
         elif plastic is not None and nudge is not None:
-            buckled = plastic.slack & self.path.structure.struts
+            buckled = self.path.structure.buckled(plastic.slack)
             raise self._collapse(plastic.flowing | buckled, self.path.structure.spread(nudge))
         else:
             raise self._collapse(found.response.flowing, found.displacement - start.displacement)

@@ -18,10 +18,10 @@ from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.theory import EXACT
-from pinjoint.components.wording import cut, missing
+from pinjoint.components.wording import brief, cut, missing
 from pinjoint.systems.statics.equations import AXES, SOFT, Array, Structure, normalised, upright
 from pinjoint.systems.statics.events import Event
-from pinjoint.systems.statics.explain import describe_motion
+from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.factor import regular, softest
 from pinjoint.systems.statics.follow import HALF, Path, Point, Step, Tangent
@@ -87,7 +87,7 @@ class Goal:
         return cls(value, (particle.row, direction))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Curve:
     """Equilibria in order along a path: load_factor (k,), displacement (k, n, 2) in m, axial_force (k, rods) in kN.
 
@@ -97,6 +97,8 @@ class Curve:
     has as many points as were asked for, or its path was lost, before the goal. events: plastic hinges, limit points and
     bifurcations on the way, in order.
     """
+
+    __repr__ = brief
 
     load_factor: Array
     displacement: Array
@@ -124,7 +126,7 @@ class Curve:
         after so many points, and goes straight on through bifurcations. Accelerations act in full from the start.
         detail: of a rod's length, the largest change between points. branch: number of the bifurcation at which it goes on
         along the mode instead, or, if negative, against it. Raises ValueError without a force or load to
-        scale, or without an equilibrium at the factor 0.
+        scale, without an equilibrium at the factor 0, or in first order with inextensible rods.
         """
         if points < 2:
             raise WrongValue("points is {points}; a curve has at least 2.", points=points)
@@ -132,6 +134,12 @@ class Curve:
         if not unloaded.balanced:
             raise ValueError(joined([tr("There is no equilibrium to start from."), unloaded.message]))
         structure, external = Structure.of(model, theory), External.of(model, theory)
+        if len(rows := structure.inextensible):
+            raise WrongValue(
+                "First-order curves take no rod for inextensible, as {rods} should be; let such rods have their EA, or"
+                " take exact theory, in which they have it.",
+                rods=rod_names(model, rows[:1]),
+            )
         loaded = external.scaled + structure.carried(structure.unmoved)
         if not structure.gather(loaded).any():
             raise WrongValue(
@@ -230,7 +238,11 @@ class _Search:
         """The path that begins in the direction of a goal."""
         found = None
         for sign in (1.0, -1.0):
-            path = Path(structure, external.at(0.0), sign * external.scaled, (0.0, sign), passes_limits=True)
+            ways = external.at(0.0), sign * external.scaled, (0.0, sign)
+            path = Path(
+                structure, *ways, passes_limits=not structure.first_order
+            )  # first order: up to collapse
+            path.end = math.inf
             place = structure.field(unloaded.displacement, unloaded.rotation)
             start = path.start(place, unloaded.permanent)
             search = cls(path, start, sign, goal)

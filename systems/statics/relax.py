@@ -7,6 +7,7 @@ equilibrium, and rods yield in their order. Newton's method takes the last steps
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 
@@ -18,6 +19,7 @@ from pinjoint.systems.statics.follow import LARGEST_MOVE, NEWTON_ITERATIONS, SMA
 
 STEPS = 4000  # at most
 STALLED = 50  # steps that together go less far than one may: it is caught where its rods turn over
+AIMED = 0.7  # of the longest step
 STEP_CONVERGED = 1e-7  # of the force at its start
 LARGEST_PENALTY = 1e9
 NUDGE = 1e-3  # of a rod's length: how far to push off an unstable equilibrium
@@ -104,12 +106,14 @@ def creep(
 
     The step is shortened until its travel is at most 1: travel(displacement) is the share of the longest step.
     """
+    given = penalty
     while penalty < LARGEST_PENALTY:
         displacement = implicit_step(path, point, residual, penalty)
-        if displacement is not None and (share := travel(displacement)) <= 1.0:
-            longer = 4.0 if share < 0.25 else 1.0 if share > 0.5 else 2.0
-            return path.after(point, displacement, point.t), penalty / longer
-        penalty *= 3.0
+        share = math.inf if displacement is None else travel(displacement)
+        if displacement is not None and share <= 1.0:
+            least = 0.25 if penalty == given else 1.0
+            return path.after(point, displacement, point.t), penalty * max(share / AIMED, least)
+        penalty *= min(share / AIMED, 3.0)
     return None
 
 

@@ -26,7 +26,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.rod import beside_thrust, extensible_elsewhere
 from pinjoint.components.theory import EXACT
-from pinjoint.components.wording import quoted
+from pinjoint.components.wording import brief, quoted
 from pinjoint.systems.statics.bending import needed_parts
 from pinjoint.systems.statics.contacts import Discs, Sinking
 from pinjoint.systems.statics.equations import ROUND_OFF, SOFT, Array, Structure, largest, normalised, of_axes
@@ -59,9 +59,11 @@ THRUST = 0.15  # of the axial strength, above which a plastic moment is less
 HELD = 1e-3  # of the forces that hold a state: a smaller difference from a scaled load counts as none
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Settlement:
     """One state per load factor, up to the first that is no equilibrium."""
+
+    __repr__ = brief
 
     states: tuple[StaticState, ...]
 

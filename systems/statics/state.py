@@ -15,6 +15,7 @@ from pinjoint.components.language import marked
 from pinjoint.components.model import Model
 from pinjoint.components.particle import of_rigid_supports
 from pinjoint.components.rod import bends, has_struts
+from pinjoint.components.wording import brief
 from pinjoint.systems.statics.equations import Array, Flags, Response, Rows, Structure, of_axes
 from pinjoint.systems.statics.events import Event
 
@@ -25,7 +26,7 @@ STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class StaticState:
     """The state at one load factor, in m, kN and J: the particles' fields are (n, 2) or (n,), the rods' (rods,).
 
@@ -38,6 +39,8 @@ class StaticState:
     contacts: rows of the discs that press each other, (k, 2), with contact_force (k,). acting: external forces (n, 2), where
     members bend with moments (n, 3).
     """
+
+    __repr__ = brief
 
     load_factor: float
     displacement: Array

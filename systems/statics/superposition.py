@@ -13,6 +13,7 @@ import numpy as np
 
 from pinjoint.components.cases import settled
 from pinjoint.components.model import Model
+from pinjoint.components.wording import brief
 from pinjoint.systems.statics.equations import Array, Structure, largest
 from pinjoint.systems.statics.theory import FirstOrder
 from pinjoint.systems.statics.unknowns import Unknown
@@ -21,13 +22,15 @@ from pinjoint.systems.statics.unknowns import Unknown
 ROUNDING = 1e-12
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SetState:
     """A set by first-order theory: displacement (n, 2) in m, rotation (n,) in rad, axial forces (rods,) in kN.
 
     end_moment: counter-clockwise on the ends of the rods, kN·m, (rods, 2). reaction: kN and, of clamps, kN·m, (n, 3). Of a
     unit force they include that force itself, in the cut bar or at the released support.
     """
+
+    __repr__ = brief
 
     displacement: Array
     rotation: Array

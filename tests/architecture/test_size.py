@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_413,
+    "lines": 72_447,
     "files": 386,
-    "names": 4_000,  # functions, classes and constants of modules
-    "public names": 2_384,
-    "numbers": 1_569,  # other than 0, 1 and 2, in constants and defaults
+    "names": 4_002,  # functions, classes and constants of modules
+    "public names": 2_386,
+    "numbers": 1_570,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 60_191,
+    "lines of tests": 60_338,
 }
 
 

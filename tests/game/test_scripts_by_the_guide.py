@@ -9,6 +9,7 @@ import pytest
 from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.components import Load, Particle, Rod
+from pinjoint.components.field import FieldError
 from pinjoint.sweeps import sweep
 
 
@@ -142,3 +143,31 @@ def test_a_model_is_kept_and_read_again(tmp_path: Path) -> None:
     s.run(time=0.5)
     again.run(time=0.5)
     assert (again.particles.displacement == s.particles.displacement).all()  # the same bits
+
+
+def test_results_are_looked_at_in_a_line() -> None:
+    session = Session.open("load_cases")
+    for result in (
+        session.statics(),
+        session.envelope(),
+        session.buckling(),
+        Session.open("hyperstatic").force_method(),
+    ):
+        assert "\n" not in repr(result)
+        assert len(repr(result)) < 1500
+    assert "diagrams={'end_axial_force': array (3, 2), 'shear'" in repr(session.statics())
+    assert repr(session.envelope()).startswith(
+        "Envelope(combinations=('spans 1 and 2', 'spans 1 and 3', …), without={}, "
+    )
+
+
+def test_what_is_no_element_or_diagram_is_named() -> None:
+    session = Session.open("load_cases")
+    for act in (session.select, lambda name: session.model.delete([name])):
+        with pytest.raises(TypeError, match="'AB' is no element; give one, such as rods"):
+            act("AB")  # type: ignore[operator]
+    with pytest.raises(FieldError, match="There is no 'bending' among the diagrams; choose one of N, M, V"):
+        session.envelope().extremes("bending", 0)
+    session.model.delete(session.rods)
+    with pytest.raises(FieldError, match="The model has no rods, along which an envelope would be"):
+        session.envelope()

@@ -140,6 +140,14 @@ def test_variants_leave_nothing_behind(name: str) -> None:
     assert list(compute(plan, range(plan.size)[::-1])) == alone[::-1]
 
 
+AB = "rods.AB.axial_force"
+
+
+def test_one_measure_may_be_a_text() -> None:
+    one, listed = (sweep(MODEL, {STIFFNESS: [1e5]}, asked, STATIC) for asked in (AB, [AB]))
+    assert one[AB].tolist() == listed[AB].tolist()
+
+
 def test_results_have_rows() -> None:
     found = sweep("isostatic", {"rods.CA.stiffness": [1e5, 2e5]}, ["rods.AB.axial_force"])
     assert len(found) == 2
@@ -444,6 +452,7 @@ SWEEPS = {
     "Nothing is varied": {"vary": []},
     "Nothing is measured": {"measure": []},
     "give it a list of at least one value": {"vary": {STIFFNESS: []}},
+    "rods.CA.stiffness: give it a list": {"vary": {STIFFNESS: 2e5}},
     "rods.CA.stiffness is varied twice": {"vary": [f"{STIFFNESS}=1,2", f"{STIFFNESS}=3:4:2"]},
     "would overwrite rods.CA.stiffness": {"vary": [f"{STIFFNESS}=1,2", "rods.*.stiffness=3,4"]},
     "would overwrite particles.B.force.y": {"vary": [FORCE_Y, "particles.*.force.y=1"]},

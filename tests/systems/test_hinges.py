@@ -13,6 +13,7 @@ from pinjoint.components.model import Model
 from pinjoint.documents.document import parse
 from pinjoint.systems.plasticity.hinges import slips
 from pinjoint.systems.program.writer import FEW, MANY
+from pinjoint.systems.statics.bending import at_limits, flows, yielding
 from tests.reference.models import model as document
 from tests.systems.program.test_frames import program_of
 
@@ -143,3 +144,22 @@ def test_ends_that_tie_share_what_slips_and_no_rounding_confuses_them() -> None:
         assert (start, end) == pytest.approx((over, over), abs=3e-16)
     assert slips(6.0, -6.0, 6.0, 6.0, 0.0, stiffness, bowing) == (0.0, 0.0)
     assert slips(8.0, 0.0, 6.0, math.inf, 0.0, stiffness, bowing) == (0.5, 0.0)
+
+
+def test_statics_and_motion_have_one_law_of_two_ends() -> None:
+    """The vectorised law of statics tells of random states, ties among them, what the kernel of motion does."""
+    lot, count = np.random.default_rng(3), 3000
+    bending, thrust = 10 ** lot.uniform(0.0, 2.0, count), lot.uniform(-8.0, 8.0, count)
+    three = bending[:, None] * ([4.0, 2.0, 4.0] + thrust[:, None] * [4.0 / 30.0, -1.0 / 30.0, 4.0 / 30.0])
+    moment, limit = 2.0 * lot.normal(size=(count, 2)), 0.1 + np.abs(lot.normal(size=(count, 2)))
+    near = lot.choice([1.0 - 1e-16, 1.0, 1.0 + 2e-16, 1.0 + 1e-12, 2.0], (len(limit[::5]), 2))
+    moment[::5] = np.sign(moment[::5]) * limit[::5] * near
+    limit[1::7, 1], limit[::7, 1] = limit[1::7, 0], np.inf
+    moment[1::7, 1] = moment[1::7, 0] * lot.choice([1.0, -1.0], len(moment[1::7]))
+    pairs = three[:, [0, 1, 1, 2]].reshape(-1, 2, 2)
+    sense = yielding(pairs, moment, limit)
+    turned = flows(pairs, moment - at_limits(sense, limit), sense != 0.0)
+    given = zip(moment.tolist(), limit.tolist(), three.tolist(), strict=True)
+    wanted = np.array([slips(*m, *most, 0.0, stiffness, (0.0, 0.0, 0.0)) for m, most, stiffness in given])
+    assert (wanted != 0.0).any(axis=1).sum() > 0.5 * count
+    assert np.abs(bending[:, None] * (turned - wanted)).max() <= 1e-14

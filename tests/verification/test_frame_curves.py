@@ -15,7 +15,7 @@ from pinjoint.documents.models import parse
 from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.path import Curve, Goal
 from tests.reference.closed_forms import von_mises_force
-from tests.reference.models import CLAMPED, PINNED, line, von_mises_truss
+from tests.reference.models import CLAMPED, PINNED, line, model, particle, rod, von_mises_truss
 from tests.verification.test_buckling import EI, HEADS, LENGTH, column
 
 
@@ -153,3 +153,15 @@ def test_the_command_tells_points_and_events(capsys: pytest.CaptureFixture[str],
 def test_goals_are_checked(until: str, said: str) -> None:
     with pytest.raises(ValueError, match=said):
         Goal.of(parse(column(2, CLAMPED, HEADS["free"])), until=until)
+
+
+def test_a_first_order_curve_ends_where_a_joint_turns_about_itself() -> None:
+    """All that resists a moment there has yielded: it does not unload and yield the other way, to and fro, instead."""
+    document = model(
+        [particle("A", 0, 0, **CLAMPED), particle("B", 3, 0, fixed=[True, True], moment=5.0)],
+        [rod("A", "B", bending_stiffness=1000.0, plastic_moment=3.0)],
+    )
+    curve = Curve.of(parse(document), Goal(1.0), theory="first-order")
+    assert [event.kind for event in curve.events] == ["hinge", "collapse"]
+    assert curve.load_factor[-1] == pytest.approx(0.6, rel=1e-9)
+    assert (np.diff(curve.load_factor) > 0.0).all()

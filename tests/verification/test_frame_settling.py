@@ -298,3 +298,17 @@ def test_a_motion_that_too_small_a_stiffness_resists_has_no_mode() -> None:
     weight = np.array([3.0, 1.0, 1.0, 2e-323])  # as of a bar of EI = 5e-324 kN·m²
     matrix = np.diag(weight) - np.diag([0.0, 1.0, 0.0, 0.0])
     assert soft_modes(matrix, weight).shape == (4, 0)
+
+
+@pytest.mark.parametrize("theory", ["first-order", "exact"])
+@pytest.mark.parametrize("top", [(5.0, 1.0), (6.0, 0.0), (5.6, 0.8)])
+def test_a_loose_bar_is_as_neutral_beside_a_beam_as_alone(theory: str, top: tuple[float, float]) -> None:
+    """Its turning takes no energy at all, beside which there is none to compare with if it lies along x or y."""
+    document = model([particle("C", 5, 0, fixed=[True, True]), particle("D", *top)], [rod("C", "D")])
+    assert settle(parse(document), theory=theory).status == "neutral equilibrium"
+    document["particles"] += [
+        particle("E", 9, 0, fixed=[True, True], fixed_rotation=True),
+        particle("F", 11, 0),
+    ]
+    document["rods"].append(rod("E", "F", bending_stiffness=100.0))
+    assert settle(parse(document), theory=theory).status == "neutral equilibrium"

@@ -15,6 +15,7 @@ from pinjoint.documents.models import parse
 from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.force_method import solve
+from pinjoint.systems.statics.path import Curve, Goal
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.theory import FirstOrder, Indeterminacy, influence_line, linear
 from pinjoint.systems.statics.unknowns import MethodError, Unknown
@@ -186,6 +187,12 @@ def test_exact_theory_motion_and_buckling_say_that_ea_counts() -> None:
     session = Session(portal())
     session.run(time=0.001)
     assert said in session.simulation.note
+
+
+def test_curves_refuse_inextensible_rods_in_first_order_and_have_their_ea_in_exact_theory() -> None:
+    with pytest.raises(ValueError, match="rod AB should be; let such rods have their EA"):
+        Curve.of(portal(), Goal(1.0), theory="first-order")
+    assert Curve.of(portal(), Goal(1.0)).complete
 
 
 def test_menus_mark_rods_and_pictures_show_it() -> None:

@@ -238,3 +238,19 @@ def test_moments_along_it_are_its_force_times_its_deflection(theory: str) -> Non
     session.press("q")
     along = inner_forces(session.model, np.array([0]), "M").at(np.array([0.0, 0.25, 0.5, 1.0]))[0]
     assert along == pytest.approx([0.0, most * math.sqrt(0.5), most, 0.0], rel=1e-3, abs=1e-12)
+
+
+@pytest.mark.parametrize("theory", ["first-order", "exact"])
+@pytest.mark.parametrize("push", [0.0, 1.25 * EULER])
+def test_beside_plastic_hinges_what_gives_way_is_told_as_without(theory: str, push: float) -> None:
+    """What buckles or is a mechanism says the same beside a beam, far from it, that has plastic hinges."""
+    loose = [particle("C", 5, 0, **HELD), particle("D", 5, 1, force=[0.0 if push else 1.0, 0.0])]
+    document = column(push)
+    document["particles"] += loose
+    document["rods"].append(rod("C", "D", **({"tension_only": True} if push else {})))
+    alone = settle(models.load(document), theory=theory)
+    document["particles"] += [particle("E", 9, 0, **HELD, fixed_rotation=True), particle("F", 11, 0)]
+    document["rods"].append(rod("E", "F", bending_stiffness=100.0, plastic_moment=10.0))
+    beside = settle(models.load(document), theory=theory)
+    assert (beside.status, beside.message) == (alone.status, alone.message)
+    assert [event.kind for event in beside.events] == [event.kind for event in alone.events]

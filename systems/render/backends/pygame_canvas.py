@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Callable, Sequence
-from functools import partial
 from importlib.resources import files
 from typing import Any
 
@@ -97,12 +96,12 @@ class Canvas:
             case Panel():
                 surface.fill(mark.fill, _box(mark))
 
-    def _kept(self, key: Any, make: Callable[[], Any]) -> Any:
+    def _kept(self, key: Any, make: Callable[..., Any], *what: Any) -> Any:
         found = self._cache.get(key)
         if found is None:
             if len(self._cache) >= _MOST_CACHED:
                 self._former, self._cache = self._cache, {}
-            found = self._cache[key] = self._former.pop(key, None) or make()
+            found = self._cache[key] = self._former.pop(key, None) or make(*what)
         return found
 
     # --- lines and areas -----------------------------------------------------------------------------
@@ -136,7 +135,7 @@ class Canvas:
         if min(size) <= 0:  # what a window of some pixels leaves of it
             return []
         key = "panel", *size, mark.radius, mark.fill, mark.outline
-        return [(self._kept(key, partial(_rounded, size, mark)), (left, top))]
+        return [(self._kept(key, _rounded, size, mark), (left, top))]
 
     def _stamps(self, mark: Stamps) -> list[_Image]:
         # Pixels; so far away it is not seen, and can be counted in whole numbers.
@@ -163,7 +162,7 @@ class Canvas:
 
     def _text(self, mark: Text) -> _Image:
         key = mark.text, mark.size, mark.colour, mark.weight
-        image, middle, ascent = self._kept(key, partial(_written, self._font, mark))
+        image, middle, ascent = self._kept(key, _written, self._font, mark)
         left = mark.x - _SHIFTS[mark.anchor] * image.get_width()
         return image, (round(left), round(mark.y + middle) - ascent)
 

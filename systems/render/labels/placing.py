@@ -169,9 +169,12 @@ class _Placing:
         cells = self.occupancy.cells_of(inside - half, 2.0 * half).tolist()
         start, end = within(ends, inside - half, inside + half)[led], ends[led]
         lines = zip(start, end, self.occupancy.cells_along(start, end, _STEP * self.unit), strict=True)
-        for k, label in enumerate(held):
-            line = next(lines) if led[k] else None
-            if not (free[k] and self._stand(label, int(place[k]), inside[k], cells[k], line)):
+        boxes = np.concatenate([inside, half], axis=1).tolist()
+        for label, number, box, taken, by_line, is_free in zip(
+            held, place.tolist(), boxes, cells, led.tolist(), free.tolist(), strict=True
+        ):
+            line = next(lines) if by_line else None
+            if not (is_free and self._stand(label, number, box, taken, line)):
                 left += [label] * bool(label.short)
         return sorted(left, key=lambda label: label.rank), numbers
 
@@ -201,7 +204,8 @@ class _Placing:
             _take(now, of[now], cells[now], found, occupancy)
         for index in np.flatnonzero(found >= 0).tolist():
             place = int(found[index])
-            self._write(labels[index], place - int(first[index]), *middle[place].tolist())
+            box = *middle[place].tolist(), *half[place].tolist()
+            self._write(labels[index], place - int(first[index]), box)
         return [label for index, label in enumerate(labels) if found[index] < 0]
 
     def led(self, labels: Sequence[Label], turns: range, lengths: Sequence[float], over: bool) -> list[Label]:
@@ -233,7 +237,8 @@ class _Placing:
             number, label = int(of[k]), labels[of[k]]
             if number in led or (not label.short and others == _MOST_LED):
                 continue
-            if self._stand(label, int(place[k]), middle[k], cells[k], (start[k], end[k], line)):
+            box = *middle[k].tolist(), *half[of[k]].tolist()
+            if self._stand(label, int(place[k]), box, cells[k], (start[k], end[k], line)):
                 led.add(number)
                 others += not label.short
         return [label for number, label in enumerate(labels) if number not in led]
@@ -297,30 +302,30 @@ class _Placing:
         return direction * reach[:, :, None]
 
     def _stand(
-        self, label: Label, place: int, middle: Points, cells: Sequence[int], line: _Line | None
+        self, label: Label, place: int, box: Sequence[float], cells: Sequence[int], line: _Line | None
     ) -> bool:
         """Let a label stand there, if all that it and a line take is free."""
         taken, (left, top, right, bottom) = self.occupancy.taken, cells
-        if np.count_nonzero(taken[top:bottom, left:right]):
+        if taken[top:bottom, left:right].any():
             return False
         if line is not None:
             start, end, along = line
-            if np.count_nonzero(taken.ravel()[along]):
+            if taken.ravel()[along].any():
                 return False
             taken.ravel()[along] = True
             table, row = label.of or ("", 0)
             self.lines.setdefault((table, label.colour), []).append((row, start, end))
         taken[top:bottom, left:right] = True
-        self._write(label, place, *middle.tolist())
+        self._write(label, place, box)
         return True
 
-    def _write(self, label: Label, place: int, x: float, y: float) -> None:
-        """Write a label with its middle at x, y, the place of that number."""
+    def _write(self, label: Label, place: int, box: Sequence[float]) -> None:
+        """Write a label in a box, of its middle and half its width and height: the place of that number."""
         self._note(label, place)
+        x, y, wide, tall = box
         if label.backing is not None:
-            wide, tall = half_size(label.text, label.size, label.weight, self.unit)
-            box = x - wide, y - tall, 2.0 * wide, 2.0 * tall
-            self.marks.append(Panel(*box, 4.0 * self.unit, label.backing, None, label.of))
+            paper = x - wide, y - tall, 2.0 * wide, 2.0 * tall, 4.0 * self.unit
+            self.marks.append(Panel(*paper, label.backing, None, label.of))
         self.marks.append(Text(label.text, x, y, label.size, label.colour, label.weight, "centre", label.of))
 
     def _note(self, label: Label, place: int) -> None:

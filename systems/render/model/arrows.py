@@ -99,7 +99,7 @@ def draw_loads(sheet: Sheet) -> None:
     loaded = (force[:, 0] != 0.0) | (force[:, 1] != 0.0)
     loaded[sheet.tagged(DiagramShown, "particles")] = False
     rows = sheet.particles[loaded[sheet.particles]]
-    if sheet.view.all_diagrams or not 0 < len(rows) <= MOST:
+    if not 0 < len(rows) <= MOST:
         return
     along, size = _directions(force[rows]), np.hypot(*force[rows].T)
     length = lengths(sheet, FORCES, size, max(float(np.hypot(*force.T).max()), sheet.view.largest_force))
@@ -213,8 +213,7 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     taken = np.full((len(sheet.centres), 2), NO_SUPPORT)  # by reactions: a side of each particle, by axis
     along_rods = borne_between(sheet.model)  # rows of arrows show these
     applied = particles.applied_force - along_rods
-    if sheet.model.first_order:
-        left_out = ~nodes(sheet.model)
+    if sheet.model.first_order and (left_out := ~nodes(sheet.model)).any():
         applied[left_out] = full_load(sheet.model)[left_out, :2]
     for name, force in (("reaction", particles.reaction[shown]), ("load", applied[shown])):
         index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST))

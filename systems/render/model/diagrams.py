@@ -230,16 +230,16 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) 
     model = sheet.model
     every = inner_forces(model, np.arange(model.rods.count), quantity)
     every.polynomials[~(np.abs(every.polynomials) < _LARGEST).all(axis=1)] = 0.0
-    largest = float(np.abs(every.at(every.with_kinks(np.linspace(0.0, 1.0, 5)))).max(initial=0.0))
+    few = every.with_kinks(np.linspace(0.0, 1.0, 5))
+    largest = float(np.abs(sampled := every.at(few)).max(initial=0.0))
     if quantity == AXIAL:  # small ones, as bending shortens rods, look small
         shear = np.abs(model.rods.shear)
         largest = max(largest, _SHARE * float(shear[shear < _LARGEST].max(initial=0.0)))
     if largest <= SMALLEST:
         return None
     side = np.full(len(every), -1.0 if quantity == MOMENT else 1.0)
-    few = every.with_kinks(np.linspace(0.0, 1.0, 5))
     whole = baseline(sheet, np.arange(len(every)))
-    fitting = max(largest, room * crowding(sheet, *stations(whole, few, side), every.at(few), taken))
+    fitting = max(largest, room * crowding(sheet, *stations(whole, few, side), sampled, taken))
     scale = room * model.settings.diagram_scale / steady(sheet, (f"diagrams.{quantity}", 0), fitting)
     scale = min(scale, _FAR / largest)
     base, curves, side = whole.some(rows), every.some(rows), side[rows]
@@ -278,9 +278,9 @@ def baseline(sheet: Sheet, rows: Rows) -> Axes:
 
 def stations(base: Axes, shares: Values, side: Values) -> tuple[Points, Points]:
     """Points of baselines in pixels, and unit normals to the left as drawn, or where `side` is −1 to the right."""
-    x, y = np.moveaxis(base.tangents(shares), -1, 0)
-    left = np.stack([y, -x], axis=-1) / np.maximum(np.hypot(x, y), 1e-300)[..., None]
-    return base.points(shares), left * side[:, None, None]
+    way = base.tangents(shares)
+    length = np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-300)[..., None]
+    return base.points(shares), way[..., ::-1] * [1.0, -1.0] / length * side[:, None, None]
 
 
 # --- areas -------------------------------------------------------------------------------------------
@@ -307,7 +307,7 @@ def _draw_areas(sheet: Sheet, name: str, diagram: _Diagram, heights: Values, dra
         return
     rows, points, heights = diagram.rows[drawn], diagram.points[drawn], heights[drawn]
     rise = heights[..., None] * diagram.normals[drawn]
-    colour, edge, u = _colour(sheet, name), points + rise, sheet.unit
+    colour, edge, u = sheet.colour_of("ink" if name in ("moment", "shear") else name), points + rise, sheet.unit
     is_outlined, of = not diagram.is_straight or sheet.rod_length > 16.0 * u, ("rods", rows)
     if diagram.is_straight:
         area = faded(colour, 0.16 if is_outlined else 0.5)
@@ -336,10 +336,6 @@ def _draw_areas(sheet: Sheet, name: str, diagram: _Diagram, heights: Values, dra
     pieces = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2), rise.reshape(-1, 2)
     of = "rods", np.repeat(rows, points.shape[1] - 1)
     sheet.occupancy.parts.add(of, *pieces[:2], rise=pieces[2], kind=DIAGRAM)
-
-
-def _colour(sheet: Sheet, name: str) -> Colour:
-    return sheet.colour_of("ink" if name in ("moment", "shear") else name)
 
 
 def _hatch(sheet: Sheet, diagram: _Diagram, drawn: Truths, colour: Colour, name: str) -> None:
@@ -389,9 +385,9 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
         diagram, selected = diagram.some(selected), selected[selected]
     which, number, shares, value = _told(sheet, diagram)
     keys, selected = _PLACES * diagram.rows[which] + number, selected[which]
-    seen = np.arange(len(which))
+    seen, (at, normal) = np.arange(len(which)), diagram.at(which, shares)
     if not diagram.is_straight:
-        seen = seen[sheet.sees(diagram.at(which, shares)[0])]
+        seen = seen[sheet.sees(at)]
     shown, worth = most_important(sheet, field, keys, value, seen, np.where(selected, 1e6, 0.0))
     if not len(shown):
         return
@@ -401,7 +397,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
     texts = [_written(sheet, quantity, each, nothing, few) for each in value.tolist()]
     lines: Literal["cover", "spare"] = "spare" if few else "cover"
     half, height = half_sizes(sheet, texts, size), diagram.scale * np.abs(value)
-    at, normal = diagram.at(which, shares[shown])
+    at, normal = at[shown], normal[shown]
     along = normal[:, ::-1] * [-1.0, 1.0] * diagram.side[which, None]
     normal = normal * np.where(value < 0.0, -1.0, 1.0)[:, None]
     edge = at + normal * height[:, None]
@@ -419,7 +415,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
     for k, (row, number_of, most, force) in enumerate(zip(*columns, strict=True)):
         of, key, rank = ("rods", row), (field, number_of), -most
         sign = "zero" if abs(force) <= SMALLEST else "tension" if force > 0.0 else "compression"
-        colour = _colour(sheet, sign) if quantity == AXIAL else sheet.colour_of("text")
+        colour = sheet.colour_of(sign if quantity == AXIAL else "text")
         short = texts[k] if not few else _written(sheet, quantity, force, nothing, few=False)
         write(
             sheet,

@@ -226,6 +226,8 @@ def _draw_rows(sheet: Sheet, spans: Spans, largest: float) -> None:
 
 def _draw_points(sheet: Sheet, spans: Spans) -> None:
     """Arrows and curved arrows at places of rods, with their values."""
+    if not (spans.force.any() or spans.moment.any()):
+        return
     share, u, colour = sheet.model.share, sheet.unit, sheet.theme.load
     way = np.diff(sheet.centres[sheet.ends[spans.row]], axis=1)[:, 0]
     start = _shares_seen(sheet, spans, np.hypot(*way.T))[0]

@@ -132,10 +132,8 @@ class Sheet:
     def sees(self, points: Points) -> Truths:
         """For each of `points` (n, 2), whether it lies in the viewport."""
         low, high = self.viewport.corners
-        inside = np.ones(len(points), dtype=bool)
-        for axis in (0, 1):
-            inside &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
-        return inside
+        inside: Truths = (points >= low) & (points <= high)
+        return inside[:, 0] & inside[:, 1]
 
     def explain(self, name: str, start: Points, end: Points) -> None:
         """Let the legend say what a colour means if any of the lines from `start` to `end`, each (n, 2), can be seen."""
@@ -184,10 +182,9 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     radii: Values = np.maximum(model.particles.radius * camera.scale, smallest)
     if frame:
         radii[rigid_joints(model) & (radii == smallest)] = _JOINT * smallest
-    around, seen = radii + 40.0 * unit, np.ones(len(centres), dtype=bool)
-    for axis in (0, 1):
-        seen &= (centres[:, axis] > low[axis] - around) & (centres[:, axis] < high[axis] + around)
-    particles, occupancy = np.flatnonzero(seen), Occupancy(viewport, unit)
+    around = radii[:, None] + 40.0 * unit
+    seen = (centres > low - around) & (centres < high + around)
+    particles, occupancy = np.flatnonzero(seen[:, 0] & seen[:, 1]), Occupancy(viewport, unit)
     placed = {} if placed is None else placed
     seen_of = rods, start, end, particles
     found = Sheet(model, view, theme, unit, centres, radii, ends, *seen_of, occupancy, placed, rod_length)

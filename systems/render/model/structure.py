@@ -154,8 +154,7 @@ def draw_rods(sheet: Sheet) -> None:
         if (mask := number == index).any():
             wider = _SHADED if sheet.shades else 1.35 if colour == theme.yielding else 1.0
             _draw_lines(sheet, slice(None) if mask.all() else mask, width * wider, colour)
-    named = {**by_force, "yielding": yielding}
-    for name, wanted in named.items():
+    for name, wanted in (*by_force.items(), ("yielding", yielding)):
         sheet.explain(name, *sheet.lines(sheet.chosen(wanted, sheet.rods))[:2])
     start, end, rows = sheet.lines()
     sheet.occupancy.line(start, end, STRONG, ("rods", rows))

@@ -31,15 +31,14 @@ def crowding(sheet: Sheet, rows: Rows) -> Values:
     rods = sheet.model.rods
     wanted = np.zeros(len(sheet.centres), dtype=bool)
     wanted[rows] = True
-    crowd = np.zeros((len(sheet.centres), 4))
+    crowd = np.zeros(4 * len(sheet.centres))
     for end, outward in ((0, [1.0, -1.0]), (1, [-1.0, 1.0])):
         attached = np.flatnonzero(wanted[sheet.ends[:, end]])
         length = np.maximum(rods.original_length[attached], 1e-300)[:, None]
         cosine = (rods.difference[attached] / length * outward) @ DIRECTIONS.T
-        for side in range(4):
-            share = np.maximum(cosine[:, side], 0.0) ** 2
-            crowd[:, side] += np.bincount(sheet.ends[attached, end], share, len(crowd))
-    return crowd
+        places = 4 * sheet.ends[attached, end, None] + np.arange(4)
+        crowd += np.bincount(places.ravel(), (np.maximum(cosine, 0.0) ** 2).ravel(), len(crowd))
+    return crowd.reshape(-1, 4)
 
 
 def support_sides(sheet: Sheet) -> NDArray[np.int64]:

@@ -74,8 +74,8 @@ def _slider(place: Place, theme: Theme, paper: Paper) -> Plate:
     sizes = (10.0, 9.0, 8.0, 7.0) if len(control.button) > 1 else 14.0
     sign = Text(control.button, sizes, ink, "semibold", "centre", wide=BUTTON)
     inside = Row((said, button(sign, None, theme, pressed=control.pressed, inset=3.0)))
-    looks = Plate(inside, faded(theme.panel, 0.94), theme.line, radius=6.0)
-    return replace(looks, action=SLIDER, item=place, wheel=("slider up", "slider down"), again=True)
+    ground, wheel = faded(theme.panel, 0.94), ("slider up", "slider down")
+    return Plate(inside, ground, theme.line, radius=6.0, action=SLIDER, item=place, wheel=wheel, again=True)
 
 
 def _knob(place: Place, theme: Theme, hovered: bool, at: Rectangle, u: float) -> list[Mark]:

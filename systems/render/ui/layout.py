@@ -181,7 +181,7 @@ class Group(Part):
         return max(wide + 2 * self.around[0] * u, self.wide * u)
 
     def height(self, u: float, width: float) -> float:
-        each = self._heights(u, width - 2 * self.around[0] * u)
+        each = self._each(u, width - 2 * self.around[0] * u)
         high = self._whole(each, u) if self.down else max(each, default=0.0)
         return max(high + (self.around[1] + self.around[2]) * u, self.high * u)
 
@@ -191,11 +191,11 @@ class Group(Part):
         left, top = place.left + sides, place.top + above
         width, height = place.width - 2 * sides, place.height - above - below
         if self.down:
-            for part, high in zip(self.parts, self._shared(self._heights(u, width), height, u), strict=True):
+            for part, high in zip(self.parts, self._shared(self._each(u, width), height, u), strict=True):
                 part.put(paper, Rectangle(left, top, width, high))
                 top += high + self.gap * u
             return
-        for part, wide in zip(self.parts, self._widths(u, width), strict=True):
+        for part, wide in zip(self.parts, self._shared(self._each(u), width, u), strict=True):
             part.put(paper, Rectangle(left, top, wide, part.height(u, wide) if self.top else height))
             left += wide + self.gap * u
 
@@ -203,19 +203,17 @@ class Group(Part):
         taken = len(each) * max(each, default=0.0) if self.even else sum(each)
         return taken + max(len(each) - 1, 0) * self.gap * u
 
-    def _each(self, u: float) -> list[float]:
-        """The pixels that each part needs across, for which those around ask again and again."""
-        known: dict[float, list[float]] = vars(self).setdefault("_known", {})
-        if u not in known:
-            known[u] = [part.width(u) for part in self.parts]
-        return known[u]
-
-    def _widths(self, u: float, room: float) -> list[float]:
-        return self._shared(self._each(u), room, u)
-
-    def _heights(self, u: float, width: float) -> list[float]:
-        widths = [width] * len(self.parts) if self.down else self._widths(u, width)
-        return [part.height(u, wide) for part, wide in zip(self.parts, widths, strict=True)]
+    def _each(self, u: float, width: float | None = None) -> list[float]:
+        """The pixels that each part needs across, or down in such a width, for which those around ask again and again."""
+        known: dict[tuple[float, float | None], list[float]] = vars(self).setdefault("_known", {})
+        if (found := known.get((u, width))) is None:
+            if width is None:
+                found = [part.width(u) for part in self.parts]
+            else:
+                widths = [width] * len(self.parts) if self.down else self._shared(self._each(u), width, u)
+                found = [part.height(u, wide) for part, wide in zip(self.parts, widths, strict=True)]
+            known[u, width] = found
+        return found
 
     def _shared(self, needed: list[float], room: float, u: float) -> list[float]:
         """What each part gets of the room in the direction of the group."""
@@ -255,7 +253,7 @@ class Scroll(Column):
 
     def put(self, paper: Paper, place: Rectangle) -> None:
         u, gap = paper.unit, self.gap * paper.unit
-        each = self._heights(u, place.width)
+        each = self._each(u, place.width)
         last = _last_first(each, gap, place.height)
         first = min(max(self.first + (last if self.from_end else 0), 0), last)
         shown, taken = 0, -gap

@@ -17,6 +17,7 @@ from pinjoint import mods
 from pinjoint.commands.command_line import main
 from pinjoint.commands.output import FORMATS
 from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.language import spoken
 from pinjoint.systems.program.compiler import Choice, Compile
 from tests.reference.models import model, particle, rod
 
@@ -130,6 +131,15 @@ def test_help_says_what_each_command_does(
     for name in EXTENSIONS.commands:
         assert any(re.fullmatch(rf"  {name} +\w.+", line) for line in lines), name
     assert max(map(len, lines)) <= 80
+
+
+@pytest.mark.parametrize("command", sorted(EXTENSIONS.commands))
+@pytest.mark.parametrize("language", ["en", "pt"])
+def test_each_command_has_help(capsys: pytest.CaptureFixture[str], command: str, language: str) -> None:
+    with spoken(language), pytest.raises(SystemExit) as ended:
+        main([command, "--help"])
+    assert ended.value.code == 0
+    assert "--help" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("command", ["run isostatic --static", "mods list"])

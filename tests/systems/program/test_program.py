@@ -511,6 +511,32 @@ def test_a_second_process_loads_instead_of_compiling(fresh_process: Callable[...
     assert second < 0.5 * first
 
 
+SHARED = f"""
+import gc, pickle
+from pinjoint import Session
+from pinjoint.systems.program import cache
+from pinjoint.systems.program.compiler import Choice, Compile
+Choice.compile = Compile.ELSEWHERE
+alone = {{"format": "pinjoint model", "version": 1, "particles": [{{"name": "A", "position": [0, 0]}}]}}
+alone["settings"] = {QUICKLY_COMPILED}
+session, other = Session.open(alone), Session.open(alone)
+module = session.simulation.program.module
+assert other.simulation.program.module is module
+del other
+gc.collect()
+module.load()
+print({{name: len(types) for name, types in pickle.loads(cache.read(f"{{module.key}}.types")).items()}})
+"""
+
+
+def test_a_program_that_is_gone_does_not_keep_another_from_being_compiled(
+    fresh_process: Callable[..., str], tmp_path: Path
+) -> None:
+    """What was kept said that it needs nothing, so that each later process compiled or loaded it in its first step."""
+    folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
+    assert fresh_process(SHARED, folders).strip() == "{'advance': 1, 'observe': 1}"
+
+
 def test_an_unwritable_cache_folder_is_done_without(fresh_process: Callable[..., str], tmp_path: Path) -> None:
     """A file stands where the folder should be: it is left alone, and the run works all the same."""
     blocked, temporary = tmp_path / "cache", tmp_path / "temporary"
