@@ -134,7 +134,6 @@ class _Part:
         self._whole[self._start + k] = value
 
 
-_TEMPORARY = "t{}__"  # names that end like this are found in no kernel
 _HELPERS = {
     "quotient__": _quotient,
     "power__": _power,
@@ -206,7 +205,7 @@ class _Rewriting(ast.NodeTransformer):
         """A value that is used twice: an expression that computes it, and one for the second use."""
         if isinstance(node, ast.Name | ast.Constant):
             return node, node
-        name = _TEMPORARY.format(next(self._temporaries))
+        name = f"t{next(self._temporaries)}__"  # names that end like this are found in no kernel
         return ast.NamedExpr(ast.Name(name, ast.Store()), node), ast.Name(name, ast.Load())
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
