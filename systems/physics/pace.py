@@ -13,9 +13,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.rod import bends
 from pinjoint.components.round_numbers import round_near
-from pinjoint.systems.physics.bending import deformations, free_coordinates, stiffness_matrix
-
-Array = NDArray[np.float64]
+from pinjoint.systems.physics.bending import Array, deformations, free_coordinates, stiffness_matrix
 
 DENSE = 100  # particles up to which a full matrix is solved, without loading a library for others
 _SLIGHTLY = 1e-10  # of the largest stiffness: holds mechanisms, which then move far, but not infinitely
