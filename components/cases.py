@@ -215,6 +215,16 @@ def idle_settlement(world: World, *, moving: bool) -> str:
     return ""
 
 
+def rename(world: World, name: str, new: str) -> None:
+    """Give a combination another name, which no other has, under which it still acts if it did."""
+    settings = world.tables["settings"][0]
+    known, acts = settings.combinations, settings.combination == name
+    with world.transaction(marked("name")):
+        settings.combination = "" if acts else settings.combination
+        settings.combinations = {new if one == name else one: factors for one, factors in known.items()}
+        settings.combination = new.strip() if acts else settings.combination
+
+
 def choose(world: World, case: str | None, combination: str | None) -> None:
     """Let one combination act in a model, "": all cases once; or one case alone. Raises ValueError."""
     settings = world.tables["settings"][0]

@@ -98,7 +98,8 @@ class Handle:
     def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
         """Adjust what depends on changed Fields of some rows, or refuse the change by FieldError.
 
-        Called after rows were created (all Fields changed) or assigned to, inside the same transaction.
+        Called after rows were created (all Fields changed) or assigned to, or others deleted (no rows, no Fields), inside
+        the same transaction.
         """
 
     def __repr__(self) -> str:

@@ -183,6 +183,11 @@ class Load(Handle):
         "rad", doc="By how much it turns the clamp of the particle, counter-clockwise; in statics."
     )
 
+    @classmethod
+    def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
+        """The case that acts alone is that of some load."""
+        _check_acting(table, changed)
+
     @property
     def particle(self) -> Particle:
         """The particle it acts on."""
@@ -244,7 +249,8 @@ class SpanLoad(Handle):
 
     @classmethod
     def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
-        """It ends where it starts, or farther along the rod."""
+        """It ends where it starts, or farther along the rod; the case that acts alone is that of some load."""
+        _check_acting(table, changed)
         for row in rows[table.end[rows] < table.start[rows]][:1].tolist():
             raise FieldError(
                 "{load}: its end, {end:g} m along the rod, is before its start, {start:g} m.",
@@ -252,6 +258,12 @@ class SpanLoad(Handle):
                 end=table.end[row],
                 start=table.start[row],
             )
+
+
+def _check_acting(table: Table[Any], changed: Collection[str]) -> None:
+    if "case" in changed:
+        settings = table.world.tables["settings"]
+        settings.kind.after_change(settings, np.zeros(0, dtype=np.intp), ())
 
 
 def varying(loads: Table[Load]) -> NDArray[np.bool_]:

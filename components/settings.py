@@ -139,6 +139,9 @@ class Settings(Handle):
         dtype=str,
         doc="The one that acts, of these, or a load case alone; none: all load cases, each with the factor 1.",
     )
+    moving_force: Field[float] = Field(
+        "kN", default=1.0, doc="Downwards: the force whose envelope along chosen rods statics shows."
+    )
     automatic_displacement_scale: Field[float] = derived(default=1.0, doc="The scale that suits the model.")
     displacement_scale: Field[float] = derived(default=1.0, doc="As given, or the automatic one.")
 

@@ -24,6 +24,7 @@ from pinjoint.components.wording import as_said, cut, missing, quoted
 
 H = TypeVar("H", bound=Handle)
 
+_NO_ROWS = np.zeros(0, dtype=np.intp)
 _world_numbers = itertools.count(1)
 
 
@@ -434,6 +435,8 @@ class World:
         if doomed:
             with self._edit(tr("delete")):
                 self.execute(Delete(tuple(doomed)))
+                for table in self.tables.values():
+                    table.kind.after_change(table, _NO_ROWS, ())
 
     def execute(self, command: Command) -> None:
         """Apply a command and report its inverse to the log; of a group that raises, nothing happened."""

@@ -267,8 +267,8 @@ class Headless(Context):
         shares["M"] (rods, s) along rods, forces["M"].values (2, rods, s) are the least and the most, in kN, kN·m, and
         .governing the number of the combination in `combinations`, −1 where all are alike; so are reaction and displacement
         (2, particles, 3), with moments and rotations. extremes("M", row): both of a rod, with distance and combination.
-        without: combinations without equilibrium, and why. path: names of rods, along which a force of 1 kN moves instead,
-        downwards; combinations are then where it stands. Raises ValueError, NoEquilibrium where none has one.
+        without: combinations without equilibrium, and why. path: names of rods, along which settings.moving_force moves
+        instead; combinations are then where it stands. Raises ValueError, NoEquilibrium where none has one.
         """
         return self.document.statics.envelope(combinations, theory, path)
 

@@ -253,10 +253,10 @@ def _limit_load(model: Model, theory: str) -> Run:
     from pinjoint.systems.statics.limit_analysis import LimitLoad
 
     limit = LimitLoad.of(model)
-    found: State = {"limit_load": limit.record(model), "steps": []}
+    found: State = {"limit_load": limit.record(model), "hinge_by_hinge": []}
     if (steps := collapse_steps(model, limit)) is not None:
         heads, *rows = steps.rows()
-        found["steps"] = [
+        found["hinge_by_hinge"] = [
             {"step": row[0], **dict(zip(map(str, heads[1:]), row[1:], strict=True))} for row in rows
         ]
     return found

@@ -31,11 +31,7 @@ def answer(options: Namespace, model: Model, analysis: Analysis) -> int:
 
     factors, permanent = analysis.load_factors or (1.0,), Start.present(model).permanent
     try:
-        found = (
-            Envelope.under_moving_force(model, options.path)
-            if options.path
-            else Envelope.of(model, (), analysis.theory, factors, permanent)
-        )
+        found = Envelope.of(model, (), analysis.theory, factors, permanent, options.path or ())
     except NoEquilibrium as reason:
         tell(str(reason))
         return NOT_ANSWERED

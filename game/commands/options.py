@@ -143,7 +143,9 @@ def add_analysis(parser: argparse.ArgumentParser) -> None:
 def add_envelope(parser: argparse.ArgumentParser) -> None:
     """Add the options of envelopes in statics, of combinations or of a force along a path."""
     flag(parser, "--envelope", "of statics: the least and the most in all combinations of load cases")
-    option(parser, "--path ROD", "the same while one force of 1 kN downwards moves along these rods", nargs="+")
+    option(
+        parser, "--path ROD", "the same while a force, settings.moving_force, moves along these rods", nargs="+"
+    )
 
 
 def path_of(options: argparse.Namespace, model: Model) -> list[str] | None:
@@ -161,7 +163,7 @@ def analysis_of(options: argparse.Namespace) -> Analysis:
     factors = numbers("--load-factors", options.load_factors) if options.load_factors is not None else None
     for name, given in (("--load-factors", factors), ("--theory", options.theory)):
         if given is not None and not options.static:
-            raise UsageError("{option} works only together with --static; add it.", option=name)
+            raise UsageError("{option} works only together with {other}; add it.", option=name, other="--static")
     return Analysis(
         load_factors=(factors or (1.0,)) if options.static else None,
         times=times(options.at) if options.at is not None else None,

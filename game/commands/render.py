@@ -181,7 +181,7 @@ def _check_static(options: argparse.Namespace) -> None:
     option = "--theory" if options.theory is not None else shapes[options.undeformed]
     option = option or "--path" * bool(options.path) or "--envelope" * options.envelope
     if option and not options.static:
-        raise UsageError("{option} works only together with --static; add it.", option=option)
+        raise UsageError("{option} works only together with {other}; add it.", option=option, other="--static")
     moving = options.until_rest or options.at is not None or options.output.lower().endswith(".gif")
     if options.static and moving:
         raise UsageError("--static: nothing moves in statics; leave out --until-rest, --at and .gif.")

@@ -58,7 +58,9 @@ def command(words: Sequence[str]) -> int:
     analysis = replace(analysis_of(options), measures_error=options.measure_error)
     wanted = "--path" if options.path else "--envelope" * options.envelope
     if wanted and not options.static:
-        raise UsageError("{option} works only together with --static; add it.", option=wanted)
+        raise UsageError("{option} works only together with {other}; add it.", option=wanted, other="--static")
+    if options.case is not None and any(change.startswith("settings.combination=") for change in options.set):
+        raise UsageError("--case and --combination exclude each other; leave out one of the two.")
     if analysis.load_factors is not None:
         model = model_of(options)
         if options.case is not None:
@@ -122,7 +124,7 @@ def lines(run: Run) -> Iterator[str]:
             yield tr("time {time} s, {steps} steps, integrator {integrator}", **how)
     if limit := run.get("limit_load"):
         yield limit["message"]
-        if steps := run["steps"]:
+        if steps := run["hinge_by_hinge"]:
             yield ""
             yield from aligned([[*steps[0]], *([*step.values()] for step in steps)])
             yield ""

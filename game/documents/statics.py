@@ -228,9 +228,8 @@ class Statics:
 
         model, settings = self._model, self._model.settings
         with model.own_state():
-            if path:
-                return Envelope.under_moving_force(model, path)
-            return Envelope.of(model, names, theory or settings.theory, settings.load_steps, self._permanent())
+            by, permanent = theory or settings.theory, self._permanent()
+            return Envelope.of(model, names, by, settings.load_steps, permanent, path)
 
     def second_order(self, elapsed: float | None = None) -> str:
         """By how much, and where, the theories differ, where that is worth a word; "" of a large structure.

@@ -96,7 +96,8 @@ def working(guide: DisplacementGuide) -> tuple[str, ...]:
     if guide.part == 1:
         return degree_of(guide.size, guide.count)
     if guide.member is not None:
-        return (tr("k of rod {rod}: forces at its ends by unit displacements there.", rod=guide.member.name),)
+        told = guide.model.describe(guide.member)
+        return (tr("k, {rod}: forces at its ends by unit displacements there.", rod=told),)
     if guide.part == 2:
         hinged = tr(
             "Hinged ends turn by themselves: they need no unknown, and resist with 3EI/L in place of 4EI/L."
@@ -126,7 +127,7 @@ def entry(tables: DisplacementTables, i: int, j: int) -> tuple[str, str, str]:
     """An entry of K, or behind its last column of F: its name, what members and joints add to it, and the sum."""
     of_load, solution = j == len(tables.names), tables.solution
     total = float(solution.load[i] if of_load else solution.stiffness[i, j])
-    terms = tables.terms(i, j)
+    terms = [(rod.said, value) for rod, value in tables.terms(i, j)]
     rest = total - sum(value for _, value in terms)
     if abs(rest) > written.ROUNDING * max([abs(total), *(abs(value) for _, value in terms)]):
         terms.append((tr("joints") if of_load else tr("supports"), rest))

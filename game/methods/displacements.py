@@ -58,7 +58,7 @@ class DisplacementTables(Tables):
             shown += [("V/φ₁", "kN", (first + mixed) / length), ("V/φ₂", "kN", (mixed + second) / length)]
             shown.append(("V/δ", "kN/m", (first + 2.0 * mixed + second) / length**2))
             columns += [Column(*column) for column in shown]
-        return Table(tr("rod"), rods.names, columns)
+        return Table(tr("rod"), self.rods, columns)
 
     def member(self, row: int) -> Table:
         """k of a rod over the directions of both its ends, along the axes of supports there."""
@@ -70,7 +70,7 @@ class DisplacementTables(Tables):
             Column(name, "", matrix[felt, at], alike=False, digits=EXACT)
             for name, at in zip(names, felt, strict=True)
         ]
-        return Table(f"k {self.model.rods.names[row]}", names, columns)
+        return Table(f"k {self.rods[row]}", names, columns)
 
     @cached_property
     def fixed_end_forces(self) -> Array:
@@ -88,7 +88,7 @@ class DisplacementTables(Tables):
         angle = np.where(turned_supports(self.model), self.model.particles.support_angle, 0.0)
         for end in (0, 1):
             forces[:, end] = turned(forces[:, end], angle[rods.between[:, end]])
-        return forces.reshape(rods.count, -1)
+        return forces.reshape(solution.members.shape[:2])
 
     def shares(self, i: int, j: int) -> Array:
         """What every rod adds to an entry of K, or behind its last column to F (rods,)."""
@@ -97,12 +97,12 @@ class DisplacementTables(Tables):
         found: Array = -(self.fixed_end_forces * self.solution.ways[:, :, i]).sum(axis=1)
         return found
 
-    def terms(self, i: int, j: int) -> list[tuple[str, float]]:
-        """The same by the names of those that add something."""
+    def terms(self, i: int, j: int) -> list[tuple[Rod, float]]:
+        """The same by those that add something."""
         shares = self.shares(i, j)
         least = written.ROUNDING * max(largest(shares), largest(self.solution.load) * (j == len(self.names)))
-        pairs = zip(self.model.rods.names, shares.tolist(), strict=True)
-        return [(name, value) for name, value in pairs if abs(value) > least]
+        pairs = zip(self.model.rods, shares.tolist(), strict=True)
+        return [(rod, value) for rod, value in pairs if abs(value) > least]
 
     def column(self, j: int) -> Table:
         """Column j of K, or behind the last F, member by member; elastic supports or loads on joints have the rest."""
@@ -112,7 +112,7 @@ class DisplacementTables(Tables):
         least = max(largest(shares), largest(total))
         shares = np.column_stack([shares, total[which] - shares.sum(axis=1)])
         rows = np.flatnonzero((np.abs(shares) > written.ROUNDING * least).any(axis=0))
-        every = [*self.model.rods.names, tr("joints") if of_load else tr("supports")]
+        every = [*self.rods, tr("joints") if of_load else tr("supports")]
         names, shares = [every[row] for row in rows.tolist()], shares[:, rows]
         columns = []
         for i, values in zip(which, shares, strict=True):
@@ -209,7 +209,7 @@ class DisplacementGuide(Guide):
         self.pointed = pointed
         first = self.sets[0].model
         terms = self.tables.terms(*pointed) if pointed is not None else []
-        first.tag_only([first.rods[name] for name, _ in terms], Selected)
+        first.tag_only([first.rods[rod.name] for rod, _ in terms], Selected)
 
     def _show(self) -> None:
         """The sets of the present part."""

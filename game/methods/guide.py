@@ -313,7 +313,7 @@ class ForceGuide(Guide):
         particle = self.model.particles[hit.name]
         held = np.flatnonzero(supported(self.model)[particle.row, :2]).tolist() + [2] * self._clamps(particle)
         if not held:
-            self.refusal = tr("{particle} has no support; click a rod or a support.", particle=particle.name)
+            self.refusal = tr("{particle} has no support; click a rod or a support.", particle=particle.said)
         elif len(held) == 1:
             self._take(Unknown(particle, held[0]))
         else:
@@ -339,7 +339,7 @@ class ForceGuide(Guide):
     def _take(self, unknown: Unknown) -> None:
         wanted = [*self.released, unknown]
         if unknown.name in {known.name for known in self.released}:
-            self.refusal = tr("{name} is released already; pick another one.", name=unknown.name)
+            self.refusal = tr("{name} is released already; pick another one.", name=unknown.said)
             return
         try:
             self.solution = solve(self.model, wanted)

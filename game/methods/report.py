@@ -242,7 +242,7 @@ class _ForcePage(_Page):
             self._text(words.degree_of(count.degree)),
         ]
         if 0 < len(unknowns) < count.degree:
-            names = listed([unknown.name for unknown in unknowns])
+            names = listed([unknown.said for unknown in unknowns])
             degree.append(self._text(tr("Released here: {names}; the others stay.", names=names)))
         found = [self._text(tr("Unknowns"))]
         for i, unknown in enumerate(unknowns):

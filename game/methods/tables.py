@@ -38,8 +38,13 @@ class Tables:
         """True if members bend."""
         return bends(self.model)
 
+    @property
+    def rods(self) -> list[str]:
+        """Names of all rods, as they are read."""
+        return [rod.said for rod in self.model.rods]
+
     def _names(self, rows: Rows) -> list[str]:
-        names = self.model.rods.names
+        names = self.rods
         return [names[row] for row in rows.tolist()]
 
     def axial_forces(self, most: int = _SHOWN) -> Table:
@@ -47,14 +52,12 @@ class Tables:
 
         most: unknowns up to which each has a column.
         """
-        names = self.model.rods.names
-        return self._superposed("N", "kN", tr("rod"), names, lambda state: state.axial_force, most)
+        return self._superposed("N", "kN", tr("rod"), self.rods, lambda state: state.axial_force, most)
 
     def moments(self, most: int = _SHOWN) -> Table:
         """Likewise M = M₀ + Σ X m at both ends of the rods that bend."""
-        rods = self.model.rods
-        rows = np.flatnonzero((rods.turning_shares > 0.0).any(axis=1))
-        names = [joined([rods.names[row], tr(end)], ".") for row in rows.tolist() for end in ENDS]
+        rows = np.flatnonzero((self.model.rods.turning_shares > 0.0).any(axis=1))
+        names = [joined([rod, tr(end)], ".") for rod in self._names(rows) for end in ENDS]
         return self._superposed(
             "M", "kN·m", tr("rod"), names, lambda state: state.bending_moment[rows].ravel(), most
         )
@@ -72,8 +75,8 @@ class Tables:
 
     def directions(self, places: Iterable[Sequence[int]]) -> list[str]:
         """Names of directions of particles, by row and axis."""
-        names = self.model.particles.names
-        return [joined([names[row], tr(AXES[axis])], ".") for row, axis in places]
+        particles = self.model.particles
+        return [joined([particles[row].said, tr(AXES[axis])], ".") for row, axis in places]
 
     def _superposed(
         self,
@@ -265,7 +268,7 @@ class ForceTables(Tables):
         titles = (tr("set 1"), tr("= set 2"), tr("+ set 3"))
         values = (real, base, total - base)
         columns = [Column(title, "", of, digits=_FINER) for title, of in zip(titles, values, strict=True)]
-        return Table("kN", self.model.rods.names, [*columns, Column(tr("residual"), "", off, digits=1)])
+        return Table("kN", self.rods, [*columns, Column(tr("residual"), "", off, digits=1)])
 
 
 def _at_ends(title: str, unit: str, moments: Array, rows: Rows, least: float) -> list[Column]:

@@ -44,7 +44,7 @@ def message(guide: ForceGuide) -> str:
             place = {"number": len(guide.released) + 1, "degree": guide.count.degree}
             return tr("Choose a rod or a support to release: number {number} of {degree}", **place)
         return tr("Choose a rod or a support to release")
-    names, last = listed([unknown.name for unknown in guide.released]), index(guide.acting + 1)
+    names, last = listed([unknown.said for unknown in guide.released]), index(guide.acting + 1)
     if guide.in_thesis:
         return {
             3: tr("Primary structure: {names} is released", names=names)
@@ -136,15 +136,15 @@ def _of_textbook(guide: ForceGuide, solution: Solution) -> tuple[Caption, ...]:
 def _of_thesis(guide: ForceGuide, solution: Solution) -> tuple[Caption, ...]:
     """What loads set 3, and the displacement of every unknown: Δ, the change of distance of a rod, or u, of a support."""
     last, several = guide.released[guide.acting], len(guide.released) > 1
-    third = tr("a unit force at {name}", name=last.name)
+    third = tr("a unit force at {name}", name=last.said)
     if last.of_bar:
-        third = tr("a pair of unit forces at {name}", name=last.name)
+        third = tr("a pair of unit forces at {name}", name=last.said)
     if guide.part == PARTS:
         third = tr("the forces p below") if several else f"p = {written.force(solution.force[0])}"
 
     def each(number: str, values: Sequence[float], per: str = "") -> Caption:
         return tuple(
-            f"{'Δ' if unknown.of_bar else 'u'}{number}{f' {unknown.name}' * several}"
+            f"{'Δ' if unknown.of_bar else 'u'}{number}{f' {unknown.said}' * several}"
             f" = {f'{written.number(value)} rad' if unknown.is_moment else f'{_cm(value)} cm'}{per}"
             for unknown, value in zip(guide.released, values, strict=True)
         )
@@ -234,13 +234,13 @@ def sums(bends: bool, moments: str, forces: str, *, pulls: bool = True, more: Se
 
 def meaning(unknown: Unknown) -> str:
     """What an unknown is, and in which direction it is positive."""
-    name = unknown.element.name
+    name, described = unknown.element.said, unknown.element.world.describe(unknown.element)
     if unknown.of_bar:
-        return tr("axial force of rod {rod}, positive in tension", rod=name)
+        return tr("{rod}: axial force, positive in tension", rod=described)
     if unknown.of_end and unknown.axis == 0:
-        return tr("bending moment at the start of rod {rod}", rod=name)
+        return tr("{rod}: bending moment at its start", rod=described)
     if unknown.of_end:
-        return tr("bending moment at the end of rod {rod}", rod=name)
+        return tr("{rod}: bending moment at its end", rod=described)
     if unknown.is_moment:
         return tr("moment of the clamp at {particle}, positive counter-clockwise", particle=name)
     if unknown.axis == 0:
@@ -250,7 +250,7 @@ def meaning(unknown: Unknown) -> str:
 
 def gap_of(unknown: Unknown, gap: str, number: str) -> str:
     """What the gap at a release is."""
-    what = {"gap": f"δ{gap}", "unknown": f"X{number}", "name": unknown.element.name}
+    what = {"gap": f"δ{gap}", "unknown": f"X{number}", "name": unknown.element.said}
     if unknown.of_bar:
         return tr(
             "{gap}: how far the load moves the two faces of the cut in {name}; positive in the direction of {unknown}.",
@@ -290,7 +290,7 @@ def equations(tables: ForceTables) -> tuple[str, ...]:
 
 def in_thesis(solution: Solution) -> tuple[str, ...]:
     """p = (Δ − Δ₀) / Δ₁ of the only unknown; of several Δ = Δ₀ + Σ Δ₁ p, a line for every one, and the solution p."""
-    names = [unknown.name for unknown in solution.unknowns]
+    names = [unknown.said for unknown in solution.unknowns]
     if len(names) > 1:
         lines = []
         for row, name in enumerate(names):

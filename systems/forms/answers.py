@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from decimal import DecimalException
 from typing import Any
 
-from pinjoint.components.cases import PERMANENT, Combinations, alone, cases, check_case
+from pinjoint.components.cases import PERMANENT, Combinations, alone, cases, check_case, rename
 from pinjoint.components.field import Field, FieldError
 from pinjoint.components.form import Box, Form
 from pinjoint.components.handle import Handle
@@ -45,6 +45,8 @@ def problem(model: Model, box: Box) -> str:
         return _name_problem(model, box)
     if part and field.shape:
         return ""
+    if part.endswith(f".{NAMED}") and value.strip() in {*model.settings.combinations} - {box.opened}:
+        return tr("there is a combination '{name}' already", name=value)
     try:
         field.check(_with_part(box.elements[0], field, part, value), box.section)
     except FieldError as error:
@@ -133,19 +135,15 @@ def _assign(model: Model, box: Box, elements: Sequence[Handle]) -> None:
         to_case(model, elements, check_case(box.text, box.section))
         return
     value = _value(field, part, box.text)
+    if part.endswith(f".{NAMED}") and box.opened and value != REMOVE:
+        rename(model, box.opened, value)
+        return
     values: Any = [_with_part(elements[0], field, part, value)] * len(elements)
     if field.shape:
         rows = model.row_of_entity[[element.entity for element in elements]]
         values = model.tables[elements[0].table].column(field.name)[rows]
         values[:, field.axes.index(part)] = value
-    acted = model.settings.combination
     model.assign(elements, field.name, values)
-    if (
-        field is Settings.combinations
-        and value in model.settings.combinations
-        and not model.settings.combination
-    ):
-        model.settings.combination = value if acted else ""  # under its new name
 
 
 def _with_part(element: Handle, field: Field[Any], part: str, value: Any) -> Any:
@@ -161,14 +159,12 @@ def _with_part(element: Handle, field: Field[Any], part: str, value: Any) -> Any
 
 
 def _with_combination(world: Any, old: Combinations, part: str, value: Any) -> Combinations:
-    """Combinations of which one has another name or another factor, or is new, or is gone. Raises FieldError."""
+    """Combinations of which one has another factor, or is new, or is gone."""
     row, _, what = part.partition(".")
     rows, at = list(old.items()), int(row)
     name, factors = rows[at] if at < len(rows) else ("", dict.fromkeys(cases(world), 1.0))
     if what != NAMED:
         factors = {**factors, cases_named(world)[int(what)]: value}
-    elif value != name and value.strip() in old:
-        raise FieldError("there is a combination '{name}' already", name=value)
     else:
         name = value
     rows[at : at + 1] = [] if name == REMOVE else [(name, factors)]

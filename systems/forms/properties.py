@@ -44,7 +44,7 @@ GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
         *(Settings.collisions, Settings.restitution, Settings.prescribed_displacement_scale),
         *(Settings.integrator, Settings.time_step, Settings.tolerance),
     ),
-    marked("Load combinations"): (Settings.combinations,),
+    marked("Load combinations"): (Settings.combinations, Settings.moving_force),
     marked("Section and material"): (
         *(Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment),
         *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.density, Rod.thermal_expansion),

@@ -203,8 +203,8 @@ class Envelope:
 
     shares: by letter N, V, M, of the lengths of rods, stations along each, ascending, the last perhaps several times,
     (rods, s); forces: bounds there, (2, rods, s). reaction, displacement: with rotations as third part, (2, n, 3). curves:
-    of forces along all rods in the first combination, the second, … path: the rods along which a force of 1 kN moves, whose
-    positions are the combinations; () of load cases.
+    of forces along all rods in the first combination, the second, … path: the rods along which a force
+    (kN, downwards) moves, whose positions are the combinations; () of load cases.
     """
 
     __repr__ = brief
@@ -218,15 +218,24 @@ class Envelope:
     displacement: Bounds
     curves: Mapping[str, Curves]
     path: tuple[str, ...] = ()
+    force: float = 1.0
 
     @classmethod
     def of(
-        cls, model: Model, names: Iterable[str], theory: str, factors: Sequence[float], permanent: Array
+        cls,
+        model: Model,
+        names: Iterable[str],
+        theory: str,
+        factors: Sequence[float],
+        permanent: Array,
+        path: Sequence[str] = (),
     ) -> Envelope:
         """That of some combinations of a model, all if none are named, by a theory, through load factors, of which the last
-        counts. permanent: plastic strains and rotations at the beginning, (rods, 3). Raises ValueError, and NoEquilibrium
-        where none has a solution.
+        counts; or of a force along a path of rods. permanent: plastic strains and rotations at the beginning, (rods, 3).
+        Raises ValueError, LookupError of rods, and NoEquilibrium where none has a solution.
         """
+        if path:
+            return cls._under_moving_force(model, path)
         known = model.settings.combinations
         for name in names:
             if name not in known:
@@ -275,16 +284,16 @@ class Envelope:
         return cls(solved, without, length, stations, forces, reaction, displacement, found.forces)
 
     @classmethod
-    def under_moving_force(cls, model: Model, path: Sequence[str]) -> Envelope:
-        """That of one force of 1 kN downwards that moves along these rods, alone and by first-order theory; "combinations"
-        are where it stands. Raises LookupError, and NoEquilibrium of a mechanism.
-        """
+    def _under_moving_force(cls, model: Model, path: Sequence[str]) -> Envelope:
+        """That of the model's moving force along these rods, alone and by first-order theory; "combinations" are where it
+        stands."""
         copy, rows = model.undeformed_copy(), [model.rods[name].row for name in path]
         copy.delete([*copy.loads, *copy.span_loads])
         length, shares = model.rods.original_length[rows], np.linspace(0.0, 1.0, POSITIONS + 1)
         places = np.outer(length, np.clip(shares, _BESIDE, 1.0 - _BESIDE)).ravel()
         cases, on = [str(number) for number in range(len(places))], np.repeat(rows, len(shares))
-        copy.create(SpanLoad, len(places), rod=on, start=places, force=(0.0, -1.0), case=cases)
+        force = 0.0, -float(model.settings.moving_force)
+        copy.create(SpanLoad, len(places), rod=on, start=places, force=force, case=cases)
         copy.settings.combinations = {case: {case: 1.0} for case in cases}
         found = cls.of(copy, (), FIRST_ORDER, (1.0,), np.zeros((model.rods.count, 3)))
         told = [
@@ -293,14 +302,15 @@ class Envelope:
             for x in size * shares
         ]
         stands = tuple(told[int(case)] for case in found.combinations)
-        return replace(found, combinations=stands, path=tuple(path))
+        return replace(found, combinations=stands, path=tuple(path), force=-force[1])
 
     @property
     def said(self) -> str:
         """Of what it is."""
         if self.path:
             return tr(
-                "envelope of 1 kN downwards that moves along {rods}",
+                "envelope of {force} downwards that moves along {rods}",
+                force=written.stated(self.force, "kN"),
                 rods=listed([as_said(Rod.noun, name) for name in self.path]),
             )
         return tr("envelope of {names}", names=listed(self.combinations))

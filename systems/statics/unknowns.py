@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from pinjoint.components.field import ENDS
-from pinjoint.components.language import marked
+from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle, in_support_axes, spring_stiffness, supported
@@ -49,6 +49,12 @@ class Unknown:
         if self.axis is None:
             return self.element.name
         return f"{self.element.name}.{(ENDS if isinstance(self.element, Rod) else AXES)[self.axis]}"
+
+    @property
+    def said(self) -> str:
+        """The same as it is read."""
+        what = self.name.removeprefix(self.element.name)[1:]
+        return joined([self.element.said, *[tr(what)] * bool(what)], ".")
 
     @property
     def place(self) -> int | tuple[int, int]:

@@ -35,7 +35,9 @@ def test_it_is_told_on_the_command_line_in_the_window_and_on_the_sheet(
     path = tmp_path / "portal.json"
     path.write_text(json.dumps(document), encoding="utf-8")
     main(["run", str(path), "--static", "--theory", "first-order", "--format", "json"])
-    steps = json.loads(capsys.readouterr().out)["steps"]
+    found = json.loads(capsys.readouterr().out)
+    assert found["steps"] == 0  # of time
+    steps = found["hinge_by_hinge"]
     assert [step["step"] for step in steps][2] == "3: hinge at E, DE"
     document["settings"] = {"theory": "first-order", "load_steps": [4.0]}
     session = Session.open(document)

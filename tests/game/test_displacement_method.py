@@ -156,7 +156,7 @@ def test_a_click_on_a_rod_shows_its_k() -> None:
     head, first, *_ = words.table(guide)
     assert head == ("k AB", "A.x", "A.y", "A.rotation", "B.x", "B.y", "B.rotation")
     assert first == ("A.x", "2250.0", "0", "−4500.0", "−2250.0", "0", "−4500.0")
-    assert "k of rod AB" in " ".join(said(session))
+    assert "k, rod AB" in " ".join(said(session))
     session.press("k")
     assert guide.member is None
 

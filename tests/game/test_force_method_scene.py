@@ -210,7 +210,7 @@ def test_all_unknowns_are_chosen_before_the_released_structure_is_shown() -> Non
     guide.pick(guide.sets[0].model.rods["BD"])
     assert (guide.part, len(guide.sets)) == (2, 1)
     assert words.message(guide) == "Choose a rod or a support to release: number 2 of 2"
-    assert words.working(guide) == ("X₁: axial force of rod BD, positive in tension",)
+    assert words.working(guide) == ("X₁: rod BD: axial force, positive in tension",)
     guide.pick(guide.sets[0].model.rods["DA"])
     assert guide.part == 3
     assert not {"BD", "DA"} & set(guide.sets[1].model.rods.names)

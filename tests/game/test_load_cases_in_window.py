@@ -315,3 +315,20 @@ def test_commands_draw_cases_combinations_and_envelopes(tmp_path: Path) -> None:
     captions = [figure.caption.text for figure in figures]
     assert any(caption.startswith("Envelope of ULS and all: Bending moments M") for caption in captions)
     assert main(["sheet", str(model), "--combination", "snow", "--output", str(tmp_path / "sheet.pdf")]) == 0
+
+
+@pytest.mark.parametrize("deed", ["delete", "of another case"])
+def test_a_case_that_acts_alone_is_that_of_some_load(deed: str) -> None:
+    """When its last load is gone, all cases act again, and a file of that model can be read; undo lets it act again."""
+    session = in_statics(beam(combination="snow"))
+    snow = [one for one in [*session.model.loads, *session.model.span_loads] if one.case == "snow"]
+    with session.model.transaction("all of them"):
+        if deed == "delete":
+            session.model.delete(snow)
+        else:
+            for load in snow:
+                load.case = "wind"
+    assert session.settings.combination == ""
+    assert parse(document(session.model)).settings.combination == ""
+    session.undo()
+    assert session.settings.combination == "snow"

@@ -107,3 +107,13 @@ def test_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     solved = Solved(Session.open(three_spans()).model, "first-order", ["AB"])
     captions = [figure.caption.text for figure in figures_of(contents(solved, LAYOUTS[0]))]
     assert any(one.startswith("Envelope of 1 kN downwards that moves along AB: Bending") for one in captions)
+
+
+def test_its_size_is_a_setting() -> None:
+    """All numbers are multiples of those of 1 kN, and what is shown names the force."""
+    session = Session.open(three_spans())
+    unit = session.envelope(path=["AB", "BC"])
+    session.settings.moving_force = 20.0
+    found = session.envelope(path=["AB", "BC"])
+    assert found.forces["M"].values == pytest.approx(20.0 * unit.forces["M"].values, abs=1e-9)
+    assert found.said.startswith("envelope of 20 kN downwards")

@@ -8,14 +8,15 @@ of what is elastic in first order; in exact theory all forces balance as derivat
 import random
 import traceback
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from pinjoint import Session
+from pinjoint.components.cases import PERMANENT, cases
 from pinjoint.components.field import FieldError
-from pinjoint.components.load import Load
+from pinjoint.components.load import DIRECTIONS, Load, SpanLoad
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends, idle_moment, nodes
@@ -31,12 +32,14 @@ COLLAPSES = "portal", "fixed_beam_collapse", "portal_collapse"
 MENDING = 0.4  # of the edits after one that leaves a mechanism; the others go on from there
 MENDS = "undo", "undo", "support", "clamp", "rod"
 STEPS = ([1.0], [1.0], [1.0, 0.5], [0.5, 1.0], [1.0, 0.0])
+CASES = PERMANENT, "wind", "snow"
 WITHIN, ROUNDING = 1e-10, 1e-13  # of the largest number; over the lowest eigenvalue, more
 SINGULAR, STABLE = 1e-9, 1e-6  # of the largest stiffness, of which the reference leaves round-off; eigenvalues
 MOST_RODS = 60
 
 Lot = random.Random
 Edit = Callable[[Session, Lot, Any, Any], Any]  # of a particle, or of a rod
+Course = tuple[Mapping[str, Edit], Sequence[str]]  # edits, and models that they begin from
 
 
 def _moved(session: Session, lot: Lot, at: Any, rod: Any) -> None:
@@ -57,6 +60,46 @@ def _new_particle(session: Session, lot: Lot, at: Any, rod: Any) -> None:
 def _new_rod(session: Session, lot: Lot, at: Any, rod: Any) -> None:
     ends = tuple(lot.sample(range(session.particles.count), 2))
     session.model.create(Rod, between=[ends], prescribed_bending_stiffness=[lot.choice([None, 5000.0])])
+
+
+def _loaded_between(session: Session, lot: Lot, at: Any, rod: Any) -> None:
+    length = rod.original_length
+    facts = {
+        "start": lot.choice([0.0, lot.uniform(0.0, 0.5) * length]),
+        "end": lot.choice([None, lot.uniform(0.5, 1.0) * length]),
+        "force": (0.0, lot.choice([0.0, lot.uniform(-20.0, 20.0)])),
+        "moment": lot.choice([0.0, lot.uniform(-9.0, 9.0)]),
+        "start_intensity": (lot.uniform(-3.0, 3.0), lot.uniform(-9.0, 0.0)),
+        "end_intensity": (0.0, lot.uniform(-9.0, 9.0)),
+        "direction": lot.choice(DIRECTIONS),
+        "temperature_change": lot.choice([0.0, lot.uniform(-20.0, 20.0)]),
+        "case": lot.choice(CASES),
+    }
+    session.model.create(SpanLoad, rod=[rod.row], **{name: [value] for name, value in facts.items()})
+
+
+def _of_a_case(session: Session, lot: Lot, at: Any, rod: Any) -> None:
+    facts: dict[str, Any] = {
+        "force": (lot.uniform(-9.0, 9.0), 0.0),
+        "settlement": (0.0, lot.uniform(-0.01, 0.0)),
+    }
+    facts |= {"settled_rotation": lot.choice([0.0, 0.002]), "case": lot.choice(CASES)}
+    session.model.create(Load, on=[at.row], **{name: [value] for name, value in facts.items()})
+
+
+def _combined(session: Session, lot: Lot, at: Any, rod: Any) -> None:
+    """One combination of all cases, by lot, and another; one of these, or one case alone, or all cases act."""
+    known, settings = cases(session.model), session.settings
+    settings.combinations = {
+        "U": {case: lot.uniform(-1.0, 2.0) for case in known},
+        "V": {PERMANENT: 1.35, lot.choice(CASES): 1.5},
+    }
+    settings.combination = lot.choice(["", "U", "U", "V", *known])
+
+
+def _sprung(session: Session, lot: Lot, at: Any, rod: Any) -> None:
+    at.support_springs = lot.choice([0.0, 500.0]), lot.choice([0.0, 800.0])
+    at.rotation_spring = lot.choice([0.0, 300.0])
 
 
 def _plastic(session: Session, lot: Lot, at: Any, rod: Any) -> None:
@@ -108,22 +151,36 @@ EDITS: dict[str, Edit] = {
     "panels": lambda s, lot, at, rod: s.press(lot.choice("iiaxm")),
     "frame": lambda s, lot, at, rod: s.frame(1.0 / 60.0),
 }
+LOADED: dict[str, Edit] = {
+    "between": _loaded_between,
+    "no loads between": lambda s, lot, at, rod: s.model.delete(list(s.span_loads)[:2]),
+    "case": _of_a_case,
+    "combination": _combined,
+    "springs": _sprung,
+    "end springs": lambda s, lot, at, rod: setattr(
+        rod, "end_springs", (lot.choice([0.0, 1e3]), lot.choice([0.0, 2e3]))
+    ),
+    "inclined": lambda s, lot, at, rod: setattr(at, "support_angle", lot.choice([0.0, 0.5, -0.8])),
+}
 BEYOND_ELASTIC: dict[str, Edit] = EDITS | {"plastic": _plastic, "strut": _strut, "weak": _plastic}
+ELASTIC: Course = (EDITS | LOADED, BASES)
+COLLAPSING: Course = (BEYOND_ELASTIC | LOADED, COLLAPSES)
 
 
 def attempt(
-    seed: int, actions: int, seen: Counter[str], mending: float = MENDING, *, elastic: bool = True
+    seed: int,
+    actions: int,
+    seen: Counter[str],
+    mending: float = MENDING,
+    edits: Mapping[str, Edit] = EDITS,
+    bases: Sequence[str] = BASES,
 ) -> None:
     """Edits by lot in a bundled model, each checked; `seen` counts what the states are.
 
-    mending: how often an edit that leaves no stable structure is followed by one that may give one back. elastic: but for
-    strengths and cables; else plastic moments, and struts that buckle, are drawn, too.
+    mending: how often an edit that leaves no stable structure is followed by one that may give one back.
     """
     lot, stable = random.Random(seed), True
-    session, edits = (
-        Session.open(lot.choice(BASES if elastic else COLLAPSES)),
-        EDITS if elastic else BEYOND_ELASTIC,
-    )
+    session = Session.open(lot.choice(bases))
     session.press("q")
     for number in range(actions):
         name, model = lot.choice(list(edits)), session.model
@@ -204,56 +261,70 @@ def _stays_elastic(model: Model) -> bool:
 
 
 def _is_usual(model: Model) -> bool:
-    """There is a rod, and nothing lies at one place."""
-    return bool(model.rods.count and (model.rods.original_length > 1e-6).all())
+    """There is a rod, nothing lies at one place, and no load reaches beyond its rod."""
+    length, loads = model.rods.original_length, model.span_loads
+    reaches = np.maximum(loads.start, np.nan_to_num(loads.end)) <= length[loads.rod.astype(int)] * (1.0 + 1e-9)
+    return bool(model.rods.count and (length > 1e-6).all() and reaches.all())
 
 
 # --- what the textbook says ---------------------------------------------------------------------------
 
 
-def _loads(model: Model, factor: float) -> tuple[np.ndarray, np.ndarray]:
-    """Forces (n, 2) and moments (n,) on joints: what scales by the factor, ramps with their full value, and weight."""
-    particles, environment = model.particles, model.environment
-    force, moment = particles.force + np.array(environment.force), particles.moment.copy()
+def _plain(model: Model, factor: float) -> dict[str, Any]:
+    """What the textbook needs: joints, their loads and supports, and rods, by numbers, each by the factor of its case; loads
+    by the load factor too, but ramps with their full value."""
+    rods, particles, used, settings = model.rods, model.particles, nodes(model), model.settings
+    chosen = settings.combination
+    by = settings.combinations.get(chosen, {chosen: 1.0}) if chosen else dict.fromkeys(cases(model), 1.0)
+    own = by.get(PERMANENT, 0.0)
+    with model.own_state():
+        settled = own * np.column_stack([particles.displacement, particles.rotation])
+    force, moment = own * (particles.force + np.array(model.environment.force)), own * particles.moment
     for one in model.loads:
         assert one.history["kind"] in ("constant", "ramp")
-        force[one.particle.row] += one.force
-        moment[one.particle.row] += one.moment
-    weight = particles.mass[:, None] * (particles.acceleration + np.array(environment.acceleration)) / 1000.0
-    return factor * force + weight, factor * moment
-
-
-def _plain(model: Model, factor: float) -> dict[str, Any]:
-    """What the textbook needs: joints, their loads and supports, and rods, by numbers."""
-    rods, particles, used = model.rods, model.particles, nodes(model)
-    with model.own_state():
-        settled, turned = particles.displacement.copy(), particles.rotation.copy()
-    force, moment = _loads(model, factor)
+        share, row = by.get(one.case, 0.0), one.particle.row
+        force[row] += share * np.array(one.force)
+        moment[row] += share * one.moment
+        settled[row] += share * np.array([*one.settlement, one.settled_rotation])
+    weight = particles.mass[:, None] * (particles.acceleration + np.array(model.environment.acceleration))
+    force = factor * force + own * weight / 1000.0
     joints = [
         {
             "name": str(row),
             "position": particles.position[row],
             "force": force[row],
-            "moment": moment[row],
+            "moment": factor * moment[row],
             "fixed": particles.fixed[row].tolist(),
             "fixed_rotation": bool(particles.fixed_rotation[row]),
             "support_springs": particles.support_springs[row],
             "rotation_spring": float(particles.rotation_spring[row]),
             "support_angle": float(particles.support_angle[row]),
-            "displacement": settled[row],
-            "rotation": turned[row],
+            "displacement": settled[row, :2],
+            "rotation": settled[row, 2],
         }
         for row in np.flatnonzero(used).tolist()
     ]
-    names = "stiffness", "bending_stiffness", "rest_length", "thermal_expansion", "temperature_change"
-    members = [
-        {name: float(getattr(rods, name)[row]) for name in (*names, "temperature_gradient")}
-        | {"name": str(row), "between": [str(end) for end in rods.between[row].tolist()]}
-        | {"hinged": rods.hinged[row].tolist(), "end_springs": rods.end_springs[row].tolist()}
-        | {"inextensible": bool(rods.inextensible[row])}
-        | {"distributed_force": factor * rods.distributed_force[row]}
-        for row in range(rods.count)
+    members: list[dict[str, Any]] = [
+        {name: float(getattr(rod, name)) for name in ("stiffness", "bending_stiffness", "rest_length")}
+        | {"thermal_expansion": rod.thermal_expansion, "name": str(rod.row)}
+        | {"between": [str(end) for end in rods.between[rod.row].tolist()]}
+        | {"hinged": list(rod.hinged), "end_springs": list(rods.end_springs[rod.row])}
+        | {"inextensible": bool(rod.inextensible), "temperature_change": own * rod.temperature_change}
+        | {"temperature_gradient": own * rod.temperature_gradient, "span_loads": []}
+        | {"distributed_force": factor * own * np.array(rod.distributed_force)}
+        | {"lack_of_fit": own * (rod.rest_length - rod.original_length)}
+        for rod in rods
     ]
+    for load in model.span_loads:
+        share, member = by.get(load.case, 0.0), members[load.rod]
+        for name in ("temperature_change", "temperature_gradient"):
+            member[name] += share * getattr(load, name)
+        facts = {
+            name: factor * share * np.array(getattr(load, name))
+            for name in ("force", "moment", "start_intensity", "end_intensity")
+        }
+        ends = {"start": load.start, "end": rods.original_length[load.rod] if load.end is None else load.end}
+        member["span_loads"].append(facts | ends | {"direction": load.direction})
     return {"particles": joints, "rods": members}
 
 
@@ -269,6 +340,13 @@ def _lowest(model: Model, factor: float) -> float:
     return float(np.linalg.eigvalsh(matrix / np.outer(scale, scale)).min(initial=1.0))
 
 
+def _in_axes(model: Model, rows: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Vectors (n, 2) on particles along the axes of their supports."""
+    cosine, sine = np.cos(model.particles.support_angle[rows]), np.sin(model.particles.support_angle[rows])
+    x, y = vectors.T
+    return np.column_stack([cosine * x + sine * y, cosine * y - sine * x])
+
+
 def _agrees(model: Model, factor: float, within: float) -> None:
     found, used = frame_theory.solve(_plain(model, factor)), np.flatnonzero(nodes(model))
     for table, rows, names in (
@@ -278,6 +356,8 @@ def _agrees(model: Model, factor: float, within: float) -> None:
         for name in names:
             wanted = np.array([getattr(found, name)[str(row)] for row in rows])
             got = getattr(table, name)[list(rows)]
+            if name == "reaction":
+                wanted, got = (_in_axes(model, used, one) for one in (wanted, got))
             if name.startswith("reaction"):
                 held = model.particles.fixed if name == "reaction" else model.particles.fixed_rotation
                 if name == "reaction_moment" and not bends(model):  # trusses leave moments out, and say so
@@ -291,10 +371,11 @@ def _agrees(model: Model, factor: float, within: float) -> None:
 def _balances(model: Model, factor: float) -> None:
     """All forces on free joints of the shape that is shown are 0: derivatives of energy, less the part of loads left out."""
     rods = model.rods
-    beyond = (
-        rods.plastic_rotation.any() or (rods.lateral_deflection > 0.0).any()
-    )  # which that energy does not know
-    if factor != 1.0 or rods.count > 20 or beyond:
+    unknown = (  # to that energy
+        *(rods.plastic_rotation.any(), (rods.lateral_deflection > 0.0).any(), model.span_loads.count),
+        model.settings.combination,
+    )
+    if factor != 1.0 or rods.count > 20 or any(unknown):
         return
     force, moment = frames.forces(model)  # under constant loads
     for one in model.loads:
@@ -303,6 +384,7 @@ def _balances(model: Model, factor: float) -> None:
             moment[one.particle.row] += one.moment
     used, largest = nodes(model), max(np.abs(model.rods.axial_force).max(), 1.0)
     free = used[:, None] & ~model.particles.fixed
+    force = _in_axes(model, np.arange(len(used)), force)
     assert np.abs(force[free]).max(initial=0.0) <= 1e-6 * largest, "forces"
     turns = used & (model.particles.turning > 0.0)
     assert np.abs(moment[turns]).max(initial=0.0) <= 1e-6 * largest, "moments"
@@ -313,7 +395,7 @@ def explore(first: int, count: int, actions: int = 200) -> int:
     wrong, seen = 0, Counter[str]()
     for seed in range(first, first + count):
         try:
-            attempt(seed, actions, seen, elastic=seed % 2 == 0)
+            attempt(seed, actions, seen, MENDING, *(ELASTIC, COLLAPSING)[seed % 2])
         except Exception:
             wrong += 1
             print(f"statics, seed {seed}:\n{traceback.format_exc()}", flush=True)

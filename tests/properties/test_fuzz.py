@@ -40,5 +40,14 @@ def test_any_edits_in_statics(seed: int, mending: float, least: float, most: flo
 def test_any_edits_in_statics_of_frames_that_collapse(seed: int) -> None:
     """With plastic hinges and struts that buckle, which are drawn, too."""
     seen = Counter[str]()
-    solved_edits.attempt(seed, 60, seen, elastic=False)
+    solved_edits.attempt(seed, 60, seen, edits=solved_edits.BEYOND_ELASTIC, bases=solved_edits.COLLAPSES)
     assert seen["inelastic"] > 0
+
+
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize(("seed", "course"), [(2, solved_edits.ELASTIC), (17, solved_edits.COLLAPSING)])
+def test_any_edits_in_statics_of_what_a_course_loads(seed: int, course: solved_edits.Course) -> None:
+    """Cases, combinations, settlements by loads, loads between ends, springs and inclined supports, too."""
+    seen = Counter[str]()
+    solved_edits.attempt(seed, 60, seen, solved_edits.MENDING, *course)
+    assert seen["compared"] > 0

@@ -28,7 +28,6 @@ class Member:
     fixed: np.ndarray
     springs: dict[int, float]
     length: float
-    load: tuple[float, float]  # along and across, per present length
     longer: float | None = None  # of inextensible ones, which have no axial stiffness
 
 
@@ -52,33 +51,43 @@ def member(rod: Document, places: list[int], span: np.ndarray) -> Member:
     )
     rotation = np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
     turned = np.kron(np.eye(2), rotation)
-    along, across = rotation[:2, :2] @ np.array(rod.get("distributed_force", (0.0, 0.0)))
     expansion = rod.get("thermal_expansion", EXPANSION)
-    longer = rest - length + rest * expansion * rod.get("temperature_change", 0.0)
+    longer = rod.get("lack_of_fit", rest - length) + rest * expansion * rod.get("temperature_change", 0.0)
     curvature = -expansion * rod.get("temperature_gradient", 0.0)
-    # A force that changes linearly: its value at the start all along, and a triangle that grows to the end.
-    more_along, more_across = rotation[:2, :2] @ np.array(rod.get("more_at_end", (0.0, 0.0)))
-    moments = np.array([across / 12.0 + more_across / 30.0, across / 12.0 + more_across / 20.0]) * rest**2
-    pushed = np.array([across / 2.0 + 0.15 * more_across, across / 2.0 + 0.35 * more_across]) * rest
-    pulled = np.array([along / 2.0 + more_along / 6.0, along / 2.0 + more_along / 3.0]) * rest
     bent = rod.get("bending_stiffness", 0.0) * curvature
-    fixed = np.array(
-        [
-            axial * longer - pulled[0],
-            -pushed[0],
-            bent - moments[0],
-            -axial * longer - pulled[1],
-            -pushed[1],
-            moments[1] - bent,
-        ]
-    )
+    fixed = np.array([axial * longer, 0.0, bent, -axial * longer, 0.0, -bent])
+    own = rod.get("distributed_force", (0.0, 0.0))  # that changes linearly
+    own = {"start_intensity": own, "end_intensity": np.add(own, rod.get("more_at_end", (0.0, 0.0)))}
+    for load in (own, *rod.get("span_loads", ())):
+        turn = np.eye(2) if load.get("direction") == "local" else rotation[:2, :2]
+        fixed -= borne(load, turn, length, rest)
     bars = bend == 0.0
     hinged, given = rod.get("hinged", (False, False)), rod.get("end_springs", (0.0, 0.0))
     springs = {2 + 3 * end: given[end] * (not bars) for end in (0, 1) if hinged[end] or given[end] or bars}
     if bars:  # simple beams
         fixed[[1, 4]] += np.array([1.0, -1.0]) * (fixed[2] + fixed[5]) / -length
         fixed[[2, 5]] = 0.0
-    return Member(places, turned, stiffness, fixed, springs, length, (along, across), longer if firm else None)
+    return Member(places, turned, stiffness, fixed, springs, length, longer if firm else None)
+
+
+def borne(load: Document, turn: np.ndarray, length: float, rest: float) -> np.ndarray:
+    """What a load between clamped ends puts on these, in local axes: work on cubics, forces and couples in balance."""
+    start = min(load.get("start", 0.0) / length, 1.0)
+    end = max(min(load.get("end", length) / length, 1.0), start)
+    points, weights = np.polynomial.legendre.leggauss(3)
+    share = (points + 1.0) / 2.0
+    first, last = (turn @ load.get(key, (0.0, 0.0)) for key in ("start_intensity", "end_intensity"))
+    spread = (first + share[:, None] * (last - first)) * (weights * (end - start) / 2.0 * rest)[:, None]
+    forces = np.vstack([turn @ load.get("force", (0.0, 0.0)), spread])
+    x, (along, across) = np.array([start, *(start + share * (end - start))]), forces.T
+    couple = np.array([load.get("moment", 0.0), 0.0, 0.0, 0.0])
+    first_moment = (across * rest * x * (1 - x) ** 2 + couple * (1 - x) * (1 - 3 * x)).sum()
+    last_moment = (-across * rest * x**2 * (1 - x) + couple * x * (3 * x - 2)).sum()
+    right = across @ x + (couple.sum() - first_moment - last_moment) / length
+    pulled = along @ x
+    return np.array(
+        [along.sum() - pulled, across.sum() - right, first_moment, pulled, right, last_moment], dtype=float
+    )
 
 
 def with_own_turns(of: Member) -> tuple[np.ndarray, np.ndarray]:

@@ -315,3 +315,18 @@ def test_methods_of_elastic_structures_refuse_what_has_turned_in_hinges() -> Non
     settle(session.model, 2.9, "first-order").final.put(session.model)
     with pytest.raises(MethodError, match="Rods BC and DE"):
         session.force_method()
+
+
+def test_a_slack_cable_that_lets_a_frame_with_hinges_fall_is_told() -> None:
+    """What is slack is known of rods and of their ends there, and which are struts of rods."""
+    particles = [
+        held("A", 0.0, fixed_rotation=True),
+        *(free(name, x, 4.0) for name, x in (("B", 0.0), ("C", 1.5), ("D", 2.25))),
+        free("E", 3.0, 4.0, fixed=[True, False], displacement=[-0.00073, 0.0], moment=-3.2),
+    ]
+    beam: Document = {"bending_stiffness": 8000.0}
+    properties: list[Document] = [beam, {"tension_only": True}, {}, beam | {"plastic_moment": 70.0}]
+    named = zip(("AB", "BC", "CD", "DE"), properties, strict=True)
+    rods = [{"name": name, "between": list(name), **facts} for name, facts in named]
+    found = models.load(model(particles, rods))
+    assert settle(found, theory=found.settings.theory).status == "mechanism"

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from pinjoint.components import written
 from pinjoint.components.cases import PERMANENT, alone
-from pinjoint.components.field import CM, Field, Vector, on_screen
+from pinjoint.components.field import CM, Field, FieldError, Vector, on_screen
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.load import SpanLoad
@@ -242,7 +242,7 @@ class DrawArrow(Drawing):
     field: the Field that it is. asks, says: the status line while it is drawn, and the notice then.
     """
 
-    field: ClassVar[str]
+    field: str
     asks: ClassVar[str]
     says: ClassVar[str]
 
@@ -365,15 +365,23 @@ class DrawSpanLoad(DrawArrow):
 
     def finish(self, context: Context, pixel: Vector) -> None:
         place, on_rod = along(context, self.elements[0], pixel), pick_rod(context.model, context.view, pixel)
-        if "/" in self.typed and self.typed.endswith("m") and len(self.places) == 1:  # kN/m
+        if len(self.places) == 1 and self._per_length():
             self.places = [0.0, float(self.elements[0].original_length)]
-            self.field = SpanLoad.end_intensity.name  # type: ignore[misc]
+            self.field = SpanLoad.end_intensity.name
         if self.typed or len(self.places) > 1 or on_rod is not self.elements[0] or place in self.places:
             super().finish(context, pixel)
             return
         self.places.append(place)
-        self.field = SpanLoad.end_intensity.name  # type: ignore[misc]
+        self.field = SpanLoad.end_intensity.name
         self.hint = joined([tr("distributed load: click where its arrow ends"), tr("Esc cancel")], BETWEEN)
+
+    def _per_length(self) -> bool:
+        """True if what is typed has a unit of force per length, for which a number alone, or none, does not pass."""
+        try:
+            typed = vector(self.typed, SpanLoad.end_intensity.unit, self.unit[1], (math.nan, math.nan), UP)
+        except FieldError:
+            return False
+        return all(map(math.isfinite, typed))
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value, [rod] = self.value(context, pixel), self.elements

@@ -133,6 +133,24 @@ def test_help_says_what_each_command_does(
     assert max(map(len, lines)) <= 80
 
 
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ("run load_cases --static --case heat --combination sun", "--case and --combination exclude each other"),
+        ("verify isostatic --path AB", "--path works only together with --influence"),
+    ],
+)
+def test_no_option_is_dropped_in_silence(capsys: pytest.CaptureFixture[str], command: str, said: str) -> None:
+    assert main(command.split()) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_model_without_rods_has_nothing_to_displace(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    (tmp_path / "empty.json").write_text(json.dumps(model([], [])))
+    assert main(["displacement-method", str(tmp_path / "empty.json")]) == 0
+    assert json.loads(capsys.readouterr().out)["unknowns"] == []
+
+
 @pytest.mark.parametrize("command", sorted(EXTENSIONS.commands))
 @pytest.mark.parametrize("language", ["en", "pt"])
 def test_each_command_has_help(capsys: pytest.CaptureFixture[str], command: str, language: str) -> None:
