@@ -163,7 +163,9 @@ def analysis_of(options: argparse.Namespace) -> Analysis:
     factors = numbers("--load-factors", options.load_factors) if options.load_factors is not None else None
     for name, given in (("--load-factors", factors), ("--theory", options.theory)):
         if given is not None and not options.static:
-            raise UsageError("{option} works only together with {other}; add it.", option=name, other="--static")
+            raise UsageError(
+                "{option} works only together with {other}; add it.", option=name, other="--static"
+            )
     return Analysis(
         load_factors=(factors or (1.0,)) if options.static else None,
         times=times(options.at) if options.at is not None else None,

@@ -37,7 +37,9 @@ def command(words: Sequence[str]) -> int:
     add_output(parser)
     options = parser.parse_args(words)
     if options.path and not options.influence:
-        raise UsageError("{option} works only together with {other}; add it.", option="--path", other="--influence")
+        raise UsageError(
+            "{option} works only together with {other}; add it.", option="--path", other="--influence"
+        )
     session = headless_of(options)
     try:
         if options.influence:

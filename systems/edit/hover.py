@@ -38,7 +38,7 @@ class Hover(System):
     def process(self, frame: Any) -> None:
         """Move the mark if the pointer is over something else now."""
         model, view = frame.session.stages[0]
-        if not isinstance(model, Model):  # boxes that cover it
+        if not isinstance(model, Model) or frame.session.view.steady:  # boxes cover it, or a hand drags
             return
         pointer = frame.session.view.pointer
         shown = view.canvas, pointer, view.menu, view.sliders

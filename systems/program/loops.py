@@ -29,8 +29,9 @@ class RodLoop:
     """A loop over every rod `r`, from particle `a` to `b`.
 
     gather: names, and expressions of values at the ends. compute: lines that use these names and entries [r] of
-    columns. made: names that compute leaves for scatter. scatter: lines that add to the ends, or elsewhere.
-    writes: columns that compute changes.
+    columns; what they do `if rare:` keeps processors from vectorising them, so that in stages all rods are computed
+    without, and those that are rare once more. made: names that compute leaves for scatter. scatter: lines that add to
+    the ends, or elsewhere. writes: columns that compute changes.
     """
 
     gather: Mapping[str, str]
@@ -65,7 +66,11 @@ class RodLoop:
         elements = dict.fromkeys(_ELEMENT.findall("\n".join(self.compute)))
         plain = [name for name, part in elements if not part and name not in self.writes][:_APART]
         copied = [(name, part) for name, part in elements if name not in plain and floats(name)]
-        kept: list[str | tuple[str, str]] = [*self.gather, *copied, *self.made]
+        usual, made = list(self.compute), [*self.made]
+        if all(map(floats, self.writes)):  # else what was written could not be taken back
+            usual = _without_rare(self.compute)
+        made += ["rare"] * (len(usual) < len(self.compute))
+        kept: list[str | tuple[str, str]] = [*self.gather, *copied, *made]
         slots = {name: slot for slot, name in enumerate(kept)}
         scattered = _ELEMENT.findall("\n".join(self.scatter))
         sliced = dict.fromkeys(name for name, _ in (*elements, *scattered))
@@ -80,17 +85,22 @@ class RodLoop:
             element = match[1], match[2]
             return place(element) if element in slots else _entry(element)
 
+        def computed(lines: Sequence[str]) -> list[str]:
+            return [
+                *(f"{name} = {place(name)}" for name in self.gather),
+                *(_ROW.sub("start + k", _ELEMENT.sub(here, line)) for line in lines),
+                *(f"{place(name)} = {name}" for name in made),
+            ]
+
         begin, end = span.split(", ")
         back = [(name, part) for name, part in copied if name in self.writes]
+        again = [*(f"{place(e)} = {_entry(e)}" for e in back), *computed(self.compute)]
         ends = ["a = ends[k, 0]", "b = ends[k, 1]"]
         stages: list[list[str]] = [
             [*ends, *(f"{place(name)} = {what}" for name, what in self.gather.items())],
             [f"{place(e)} = {_entry(e)}" for e in copied],
-            [
-                *(f"{name} = {place(name)}" for name in self.gather),
-                *(_ROW.sub("start + k", _ELEMENT.sub(here, line)) for line in self.compute),
-                *(f"{place(name)} = {name}" for name in self.made),
-            ],
+            computed(usual),
+            [f"if {place('rare')} != 0.0:", *indented(again)] if "rare" in made else [],
             [
                 *ends,
                 *(f"{name} = {place(name)}" for name in self.made),
@@ -111,6 +121,15 @@ class RodLoop:
             f"for start in range({begin}, {end}, {CHUNK}):",
             *indented(body),
         ]
+
+
+def _without_rare(lines: Sequence[str]) -> list[str]:
+    """Lines but for what they do `if rare:`."""
+    kept, inside = [], False
+    for line in lines:
+        inside = line == "if rare:" or (inside and line.startswith(" "))
+        kept += [] if inside else [line]
+    return kept
 
 
 def _entry(element: tuple[str, str]) -> str:

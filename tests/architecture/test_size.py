@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_448,
+    "lines": 72_485,
     "files": 386,
-    "names": 3_968,  # functions, classes and constants of modules
-    "public names": 2_379,
+    "names": 3_970,  # functions, classes and constants of modules
+    "public names": 2_380,
     "numbers": 1_566,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 60_500,
+    "lines of tests": 60_650,
 }
 
 

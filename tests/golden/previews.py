@@ -21,12 +21,15 @@ MOMENTS = {
     "ball_on_frame": 1.13,
     "ball_on_truss": 0.3,
     "billiards_break": 0.9,
+    "catapult": 0.0,
     "collision_i": 0.0,
     "collision_ii": 0.0,
     "collision_iii": 0.0,
     "collision_iv": 0.0,
     "collision_v": 0.0,
     "collision_vi": 0.0,
+    "demolition": 0.0,
+    "falling_columns": 0.0,
     "flexible_pendulum": 0.6,
     "galperin_pi": 0.0,
     "hanging_net": 1.0,
@@ -35,8 +38,10 @@ MOMENTS = {
     "newtons_cradle": 0.0,
     "pendulum": 0.25,
     "pile": 1.5,
+    "rope_bridge": 0.0,
     "staircase": 0.6,
     "sway_resonance": 4.3,
+    "swing": 0.3,
 }
 
 

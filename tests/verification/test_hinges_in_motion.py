@@ -87,8 +87,11 @@ def test_every_form_has_the_same_bits() -> None:
         session.model.writable("clock.step_size")[0] = 1e-5
         program.advance(50)
         states.append(state_of(session))
-        turned.append(session.model.rods.plastic_rotation.copy())
-    assert turned[0].any()
+        rods = session.model.rods
+        turned.append(np.stack([rods.plastic_rotation, rods.hinge_formed_at]))
+        assert ("if scratch[" in program.source) == (form != FEW), "the others vectorise"
+    assert turned[0][0].any()
+    assert (turned[0][1] > 0.0).any()
     assert states[0] == states[1]
     assert (turned[0] == turned[1]).all()
     assert turned[2] == pytest.approx(turned[0], rel=1e-9, abs=1e-15)

@@ -16,14 +16,25 @@ from pinjoint.editor.scenes.files import FileScene, saved_models
 from pinjoint.lessons import progress
 from pinjoint.lessons.progress import is_done, shelf
 from pinjoint.scripts.script import NEW, Script, lessons
+from pinjoint.systems.input.actions import SIMULATION
 
 LESSONS = marked("Begin here")
-TRUSSES, BENDING, COLLISIONS = EXAMPLES = marked("Trusses"), marked("Members that bend"), marked("Collisions")
+PLAYGROUND, TRUSSES, BENDING, COLLISIONS = EXAMPLES = (
+    *(marked("Playground"), marked("Trusses"), marked("Members that bend"), marked("Collisions")),
+)
 YOURS = marked("Your models")
 DISCARD = "discard unsaved work"  # the source of the tile that discards what windows left behind
 ALL = "all of this section"  # the source of a tile that shows all tiles of its section, not only a row of them
 # The first of each section; the others follow in alphabetical order.
+PLAYED = (
+    "swing",
+    "catapult",
+    "demolition",
+    "falling_columns",
+    "rope_bridge",
+)  # of the playground: they run at once
 FIRST = (
+    *PLAYED,
     *("isostatic", "hyperstatic", "pendulum", "warren_bridge", "hyperstatic_yield", "tower", "ball_on_truss"),
     *("portal", "eulers_columns", "portal_collapse", "rolled_cantilever", "ball_on_frame", "gerber_beam"),
     *("collision_iii", "newtons_cradle", "billiards_break", "pile", "staircase", "galperin_pi"),
@@ -125,6 +136,9 @@ class Load(FileScene):
             if lesson is not None:  # one with tasks leads back to where one was
                 mode = context.scenes.hub if lesson.task_count else PAUSE
             context.scenes.request(mode)
+            if source in PLAYED:
+                context.scenes.request(SIMULATION)
+                context.notice = tr(context.model.description).partition(". ")[0] + "."
 
     def changed(self, context: Context) -> None:
         """Show the tiles whose titles or names contain every word that was typed."""
@@ -190,6 +204,7 @@ def _examples() -> list[Tile]:
     names = sorted(told, key=lambda name: told[name].title)
     names.sort(key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
     subject = {name: (BENDING if of.bends else TRUSSES) if of.rods else COLLISIONS for name, of in told.items()}
+    subject |= dict.fromkeys(PLAYED, PLAYGROUND)
     offers = []
     for section in EXAMPLES:
         some = [name for name in names if subject[name] == section]

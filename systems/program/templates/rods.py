@@ -75,7 +75,8 @@ def geometry():
             free_end = slope_end
             slip_start = 0.0
             slip_end = 0.0
-            if abs(moment_start) > rods_moment_limit[r, 0] or abs(moment_end) > rods_moment_limit[r, 1]:
+            rare = (abs(moment_start) > rods_moment_limit[r, 0]) | (abs(moment_end) > rods_moment_limit[r, 1])
+            if rare:
                 slip_start, slip_end, moment_start, moment_end, thrust = slipping(
                     r, 1.0, straight, slope_start, slope_end, nx, ny, *needed
                 )

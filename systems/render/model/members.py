@@ -345,7 +345,7 @@ def draw_moments(sheet: Sheet) -> None:
     if sheet.view.forces_known:
         shown[sheet.tagged(DiagramShown, "particles")] = True
         shown |= sheet.view.all_diagrams
-    applied = full_load(model)[:, 2]
+    applied = model.particles.applied_moment if shown.all() else full_load(model)[:, 2]
     if shown.any():
         applied = np.where(shown, model.particles.applied_moment, applied)
         _draw_moments(sheet, "reaction", np.where(shown, model.particles.reaction_moment, 0.0))

@@ -97,12 +97,9 @@ def draw_supports(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     rigid, held = sheet.model.particles.fixed[rows].any(axis=1), clamps(sheet.model)
     supported = rows[rigid & (sides[rows] != NO_SUPPORT)]
     kinds = 2 * held[supported] + sheet.model.particles.fixed[supported].all(axis=1)
-    for side in range(4):
-        for kind, symbol in enumerate(("roller", "pinned", "guided", "clamped")):
-            of = supported[(sides[supported] == side) & (kinds == kind)]
-            if not len(of):
-                continue
-            _stand(sheet, symbol, side, of)
+    codes, symbols = 4 * sides[supported] + kinds, ("roller", "pinned", "guided", "clamped")
+    for code in np.unique(codes).tolist():
+        _stand(sheet, symbols[code % 4], code // 4, supported[codes == code])
     if is_sprung(sheet.model):
         _draw_springs(sheet, rows)
     if len(turning := rows[held[rows] & ~rigid]):

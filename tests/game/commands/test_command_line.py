@@ -136,7 +136,10 @@ def test_help_says_what_each_command_does(
 @pytest.mark.parametrize(
     ("command", "said"),
     [
-        ("run load_cases --static --case heat --combination sun", "--case and --combination exclude each other"),
+        (
+            "run load_cases --static --case heat --combination sun",
+            "--case and --combination exclude each other",
+        ),
         ("verify isostatic --path AB", "--path works only together with --influence"),
     ],
 )
@@ -145,7 +148,9 @@ def test_no_option_is_dropped_in_silence(capsys: pytest.CaptureFixture[str], com
     assert said in capsys.readouterr().err
 
 
-def test_a_model_without_rods_has_nothing_to_displace(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_a_model_without_rods_has_nothing_to_displace(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     (tmp_path / "empty.json").write_text(json.dumps(model([], [])))
     assert main(["displacement-method", str(tmp_path / "empty.json")]) == 0
     assert json.loads(capsys.readouterr().out)["unknowns"] == []
