@@ -237,6 +237,14 @@ def test_space_runs_and_pauses_step_and_back(hand: Hand) -> None:
     assert hand.session.scene == "pause"
 
 
+def test_a_new_model_begins_from_the_start_page_too(hand: Hand) -> None:
+    hand.key(pygame.K_d)
+    assert hand.session.scene == "load"
+    hand.key(pygame.K_n, CTRL)
+    hand.app.next_frame(wait=False)
+    assert (hand.session.scene, hand.session.particles.count) == ("statics", 0)
+
+
 def test_help_opens_and_closes(hand: Hand) -> None:
     hand.key(pygame.K_F1)
     assert hand.session.view.help == 1

@@ -9,7 +9,7 @@ from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.context import Context
 from pinjoint.scripts.script import NEW
 from pinjoint.systems.edit import Refusal, saving
-from pinjoint.systems.input.actions import ACTIONS, actions_of
+from pinjoint.systems.input.actions import ACTIONS, LIVE, LOAD, actions_of
 
 action = actions_of("Files")
 
@@ -40,7 +40,7 @@ action("load", "d", "open a model", HUBS)(lambda context, pixel: context.scenes.
 action("load", "ctrl+o", "open a model")(ACTIONS["load"].perform)
 
 
-@action("new", "ctrl+n", "start a new model")
+@action("new", "ctrl+n", "start a new model", (*LIVE, LOAD))
 def _new(context: Context, pixel: Vector) -> None:
     """An empty model, whose structure is drawn in statics."""
     context.documents.open(NEW)
