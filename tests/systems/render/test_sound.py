@@ -12,7 +12,15 @@ from pinjoint.documents import models
 from pinjoint.documents.preferences import preferred
 from pinjoint.systems.render import pygame_sound
 from pinjoint.systems.render.pygame_sound import RATE, TONES, PygameSound, tone
+from pinjoint.systems.run import real_time
 from tests.systems.edit.hand import FRAME
+
+
+@pytest.fixture(autouse=True)
+def keeps_the_pace(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frames take all the steps that are due, on any machine."""
+    for limit in ("BUDGET", "LONGEST_STEP", "AT_ONCE"):
+        monkeypatch.setattr(real_time, limit, 10.0)
 
 
 class Listener(PygameSound):
