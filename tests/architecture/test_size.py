@@ -13,7 +13,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_485,
+    "lines": 72_489,
     "files": 386,
     "names": 3_970,  # functions, classes and constants of modules
     "public names": 2_380,
