@@ -154,7 +154,11 @@ def _range(parts: Sequence[str]) -> tuple[float, ...]:
         raise PathError("a range has a start, a stop and a count; {form}.", form=tr(FORMS))
     start, stop = _finite(parts[0]), _finite(parts[1])
     if not (re.fullmatch("[0-9]{1,9}", parts[2]) and 1 <= int(parts[2]) <= MOST_VARIANTS):
-        raise PathError("'{text}' is not a count; write a whole number of at least 1.", text=cut(parts[2]))
+        raise PathError(
+            "'{text}' is not a count; write a whole number of at least 1, at most {most}.",
+            text=cut(parts[2]),
+            most=MOST_VARIANTS,
+        )
     if spaced is np.geomspace and not start * stop > 0.0:
         raise PathError("a :log range cannot reach or cross 0; leave out :log, or change the limits.")
     return tuple(spaced(start, stop, int(parts[2])).tolist())

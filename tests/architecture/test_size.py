@@ -13,7 +13,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_537,
+    "lines": 72_541,
     "files": 386,
     "names": 4_007,  # functions, classes and constants of modules
     "public names": 2_388,

@@ -404,7 +404,7 @@ VARY = {
     "rods.CA.stiffness=1:2:0": "'0' is not a count; write a whole number of at least 1",
     "rods.CA.stiffness=1:inf:3": "'inf' is not a finite number",
     "rods.CA.stiffness=0:5:3:log": "a :log range cannot reach or cross 0",
-    "rods.CA.stiffness=1:2:200000000": "'200000000' is not a count",
+    "rods.CA.stiffness=1:2:200000000": "'200000000' is not a count; write a whole number of at least 1, at most 10000000",
     "particles.B.force=1,2": "vary one component, force.x or force.y",
     "particles.B.force.z=1,2": "load has no part 'z'; write one of force.x, force.y",
     "rods.CA.stiffness~normal(1)": "'normal(1)' is not a distribution; write one of normal, lognormal, uniform",
