@@ -19,7 +19,7 @@ MOST = {
     "public names": 2_388,
     "numbers": 1_570,  # other than 0, 1 and 2, in constants and defaults
     "registers": 48,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 60_666,
+    "lines of tests": 60_669,
 }
 
 
