@@ -24,7 +24,6 @@ Column = NDArray[Any]
 CM, MOVED = ("cm", 100.0), ("displacement", 100.0)
 LARGEST, SMALLEST = 1e30, 1e-30  # sizes of numbers to compute with, in inside units; SMALLEST of those above 0
 _FEW = 8  # rows up to which checking values one by one is faster than as an array
-_LARGEST_REFERENCE = 2**32 - 1
 # By a Field's dtype: the numpy type of its column, its default; and what numbers and flags given for a whole column may
 # be: numpy's kinds, or the types in a list.
 _STORAGE: dict[Any, tuple[Any, Any, str, set[type]]] = {
@@ -123,7 +122,7 @@ class Field(Generic[T]):
                 field=self.title or self.doc,
             )
         if self.dtype == "reference":
-            self.minimum, self.maximum = 0, _LARGEST_REFERENCE
+            self.minimum, self.maximum = 0, np.iinfo(np.uint32).max
         if self.dtype is float and self.role in MADE:
             self._limit()
         if not self.shown[1]:

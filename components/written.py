@@ -24,7 +24,7 @@ ROUNDING = 1e-9  # of the largest of its kind: a result below is written as 0
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what a formula of a spreadsheet begins with
 _LENGTH, _PER_METRE = CM
 _PLAIN = range(-4, 7)  # powers of ten within which numbers are written out
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
@@ -70,7 +70,7 @@ def _number(value: float, digits: int, nothing: float = 0.0) -> str:
     power = int(exponent)
     if power in _PLAIN:
         return f"{value:.{max(digits - 1 - power, 0)}f}".replace("-", "−")
-    return f"{mantissa}·10{str(power).translate(_RAISED)}".replace("-", "−")
+    return f"{mantissa}·10{str(power).translate(RAISED)}".replace("-", "−")
 
 
 def wanted(digits: int) -> int:

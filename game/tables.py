@@ -16,7 +16,6 @@ from pinjoint.components.language import decimals
 Array = NDArray[np.float64]
 
 _SMALL = 1e-2  # smaller numbers are written as multiples of a power of 1000
-_ABOVE = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class Column:
@@ -56,7 +55,7 @@ class Column:
         self._nothing = written.ROUNDING * greatest / 10.0**self.power
         if summed:
             self._decimals = self._adding_up()
-        ten = f"10{str(self.power).translate(_ABOVE)} " if self.power else ""
+        ten = f"10{str(self.power).translate(written.RAISED)} " if self.power else ""
         self.title, self.unit = title, f"{ten}{unit}".strip()
 
     def _adding_up(self) -> int:

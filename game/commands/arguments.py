@@ -65,7 +65,12 @@ class Parser(argparse.ArgumentParser):
 
     def keep(self, options: Mapping[str, Any]) -> None:
         """Raise UsageError if a file that options write is one that they, or others of these names, read."""
-        files = [(name, path) for name, value in options.items() for path in _paths(value)]
+        files = [
+            (name, Path(one))
+            for name, value in options.items()
+            for one in (value if isinstance(value, list) else [value])
+            if isinstance(one, str | Path)
+        ]
         for (name, path), (other, same) in itertools.permutations(files, 2):
             if name in _OUTPUTS and (other not in _OUTPUTS or name < other) and _is_one_file(path, same):
                 self.error(
@@ -104,11 +109,6 @@ def option(
 def flag(to: argparse._ActionsContainer, name: str, about: str) -> None:
     """Add an option without a value."""
     option(to, name, about, action="store_true")
-
-
-def _paths(value: Any) -> list[Path]:
-    """The files that an option may name."""
-    return [Path(one) for one in (value if isinstance(value, list) else [value]) if isinstance(one, str | Path)]
 
 
 def _is_one_file(one: Path, other: Path) -> bool:

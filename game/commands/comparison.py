@@ -31,7 +31,6 @@ LEFT_OUT = marked("left out")  # of a simulation
 MOST_WORK = 200_000  # steps × elements of a simulation that nobody asked for: some seconds, interpreted
 _PORTIONS = 10  # in which they are taken
 SHOWN = 6  # mechanisms and frequencies in a table
-_IN_TABLES = {"m": ("mm", 1000.0)}  # else units as in files
 _ANSWERS = {
     "simulation": marked("simulation"),
     "linear": marked("linear theory"),
@@ -298,7 +297,7 @@ def lines(found: Found) -> Iterator[str]:
     if limit := found.get("limit_load"):
         yield limit["message"]
     for quantity, (_, unit, title) in QUANTITIES.items():
-        shown, factor = _IN_TABLES.get(unit, (unit, 1.0))
+        shown, factor = ("mm", 1000.0) if unit == "m" else (unit, 1.0)
         rows = {f"{name} {tr(axis)}".rstrip(): values for name, axis, values in _values(found, quantity)}
         if rows:
             yield ""

@@ -19,8 +19,6 @@ from pinjoint.systems.statics.explain import describe_motion
 from pinjoint.systems.statics.path import Curve, Goal
 from pinjoint.systems.statics.theory import mechanisms
 
-_PICTURES = ".png", ".svg", ".pdf"
-
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
@@ -59,7 +57,7 @@ def command(words: Sequence[str]) -> int:
         end = Goal.of(model, options.factor, options.until)
         wanted = {name: getattr(options, name) for name in ("points", "branch", "theory")}
         found = Curve.of(model, end, **wanted)
-        is_picture = str(options.output).lower().endswith(_PICTURES)
+        is_picture = str(options.output).lower().endswith((".png", ".svg", ".pdf"))
         drawn = plot(model, found, options.of or ()) if is_picture else None
         chosen(model, found, options.of or ())
     except (ValueError, LookupError) as error:

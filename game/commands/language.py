@@ -13,7 +13,6 @@ from pinjoint.components.units import show_in
 from pinjoint.documents.preferences import preferred
 
 VARIABLE, UNITS = "PINJOINT_LANGUAGE", "PINJOINT_UNITS"
-_OF_SYSTEM = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")  # the first that is set counts, as for gettext
 
 
 def speak_as_asked(words: Sequence[str]) -> list[str]:
@@ -56,7 +55,8 @@ def asked_language() -> str:
 
 def language_of_system() -> str:
     """The first language of the system that there is a catalogue for; English if there is none."""
-    said = next(filter(None, map(os.environ.get, _OF_SYSTEM)), None) or locale.getlocale()[0] or ""
+    in_order = "LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG"  # as for gettext
+    said = next(filter(None, map(os.environ.get, in_order)), None) or locale.getlocale()[0] or ""
     return _known(said.split(":")) or ENGLISH
 
 

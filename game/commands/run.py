@@ -28,15 +28,11 @@ from pinjoint.components.language import marked, several, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.table import fields_of
-from pinjoint.components.theory import EXACT, FIRST_ORDER
+from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.paths import ENERGIES
 from pinjoint.systems.collision.impacts import Impacts
 
 _KINDS: Mapping[str, type[Handle]] = {"particles": Particle, "rods": Rod}
-_BY_THEORY = {
-    FIRST_ORDER: marked("static equilibrium by first-order theory"),
-    EXACT: marked("static equilibrium with large displacements"),
-}
 _ERRORS = {
     "relative": marked("displacements"),
     "relative_velocity": marked("velocities"),
@@ -116,8 +112,10 @@ def lines(run: Run) -> Iterator[str]:
     yield f"{run['model']}: {tr(run['status'])}"
     if run["message"]:
         yield run["message"]
-    if run["integrator"] is None:
-        yield tr(_BY_THEORY[run["theory"]])
+    if run["integrator"] is None and run["theory"] == FIRST_ORDER:
+        yield tr("static equilibrium by first-order theory")
+    elif run["integrator"] is None:
+        yield tr("static equilibrium with large displacements")
     else:
         how = {name: as_written(run[name]) for name in ("time", "steps", "time_step", "integrator")}
         if run["time_step"]:

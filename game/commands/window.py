@@ -27,13 +27,6 @@ from pinjoint.systems.render.theme import theme_names
 from pinjoint.version import __version__
 
 
-def _refuse_misspelt(word: str) -> None:
-    """Raise UsageError for a word that is not a model but nearly a command."""
-    near = nearest(word, EXTENSIONS.commands, cutoff=0.75)
-    if near and word not in models.bundled() and not Path(word).exists():
-        raise UsageError("There is no command '{word}'; did you mean '{near}'?", word=word, near=near)
-
-
 def _epilog() -> str:
     """The commands, the options that all have, and the bundled models."""
     width = max(map(len, EXTENSIONS.commands))
@@ -61,8 +54,10 @@ def _epilog() -> str:
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
-    if words:
-        _refuse_misspelt(words[0])
+    for word in words[:1]:
+        near = nearest(word, EXTENSIONS.commands, cutoff=0.75)
+        if near and word not in models.bundled() and not Path(word).exists():
+            raise UsageError("There is no command '{word}'; did you mean '{near}'?", word=word, near=near)
     parser = Parser(
         "",
         "A laboratory for particles, trusses and frames.",

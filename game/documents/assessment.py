@@ -120,8 +120,10 @@ class Assessment:
     def in_equilibrium(self) -> bool:
         """True if it came to rest or was settled, and is in equilibrium under the present load."""
         model = self._model
-        if self._rests or (model.particles.velocity.any() and not self._rests):
-            return self._rests and self.balanced
+        if self._rests:
+            return self.balanced
+        if model.particles.velocity.any():
+            return False
         at = model.newest(Role.DOCUMENT, Role.STATE)
         if self._resting is None or self._resting[0] != at:
             self._resting = at, model.clock.collision_state is not None or not self.is_small or _balanced(model)

@@ -7,7 +7,6 @@ from contextlib import suppress
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -47,16 +46,9 @@ def preview(source: str | Path) -> Model:
 
 @cache
 def _example(name: str) -> Model:
+    """A bundled model, in the state (by name and column) that tests/golden/previews.py computes, or as it begins."""
     model = models.load(name)
-    for column, values in _states().get(name, {}).items():
+    states = json.loads((files("pinjoint.assets") / "previews.json").read_text("utf-8"))
+    for column, values in states.get(name, {}).items():
         model.writable(column)[...] = np.array(values)
     return model
-
-
-@cache
-def _states() -> dict[str, dict[str, Any]]:
-    """By example and column what differs then from its beginning; tests/golden/previews.py computes it."""
-    found: dict[str, dict[str, Any]] = json.loads(
-        (files("pinjoint.assets") / "previews.json").read_text("utf-8")
-    )
-    return found

@@ -41,8 +41,6 @@ _MOST_COMPARED = 300  # rods, up to which both theories take a moment only
 # Of a frame of a window, for solving: at least and at most (s), and the share of the last one.
 PART, _MOST, _SHARE = 0.03, 0.25, 0.5
 SMALL = 200  # rods, up to which first order is found within the frame
-_CHOICES = "theory", "load_steps"  # of the settings
-_MOVED = "displacement", "rotation"  # of constrained directions: settled supports
 
 
 class Statics:
@@ -193,8 +191,8 @@ class Statics:
         return (
             model.newest(Role.DOCUMENT),
             model.structure,
-            *(settings.version(name) for name in _CHOICES),
-            *(particles.version(name) for name in _MOVED),
+            *(settings.version(name) for name in ("theory", "load_steps")),
+            *(particles.version(name) for name in ("displacement", "rotation")),  # settled supports
         )
 
     def settled(

@@ -277,7 +277,7 @@ class Scenes:
             self.active = self._by_name[name]
             self.hub = name if name in HUBS else self.hub
             self.show_state(context)
-            self.time_passes = context.schedule.is_active(_TIME, name)
+            self.time_passes = context.schedule.is_active(Time(), name)
             self.active.enter(context)
             if self.time_passes:
                 context.document.history.begin_run()
@@ -286,8 +286,6 @@ class Scenes:
 
 
 # --- the context -----------------------------------------------------------------------------------------
-
-_TIME = Time()
 
 
 class Context:

@@ -28,7 +28,6 @@ from pinjoint.systems.input.actions import LIVE
 
 # The keys of the controls of the displacement scale and, in statics, of the last load step.
 SCALE, LOAD = -1, -2
-SHOW = "show combination"  # the action of what can be chosen to act
 HIGH = 400.0  # points of a canvas that has room for that of the load
 LOADS = Slider((), 0.0, 2.0)  # the range of that, unless the model needs more
 SCALES = Slider((), 1.0, 1000.0, logarithmic=True)  # of displacements, unless the model needs more
@@ -69,7 +68,8 @@ def _choices(context: Context) -> tuple[Tool, ...]:
         return ()
     chosen = None if enveloped else model.settings.combination
     titles = [name if name in model.settings.combinations else begun(said(model, name)) for name in names]
-    tools = [Tool(SHOW, title, pressed=name == chosen) for name, title in zip(names, titles, strict=True)]
+    named = zip(names, titles, strict=True)
+    tools = [Tool("show combination", title, pressed=name == chosen) for name, title in named]
     return (
         *tools,
         Tool("toggle envelope", begun(tr("envelope")), pressed=enveloped),

@@ -25,6 +25,7 @@ from pinjoint.components.view import (
     Readout,
     Status,
     Trails,
+    drawn_at,
     drawn_places,
     drawn_positions,
 )
@@ -39,11 +40,10 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
 from pinjoint.systems.edit.rods import is_rigid
 from pinjoint.systems.forms.results import along, told
-from pinjoint.systems.input.actions import ACTIONS, LIVE
+from pinjoint.systems.input.actions import ACTIONS, LIVE, PROPERTIES
 from pinjoint.systems.render.ui.overlays import BAR
 
 READYING = marked("Getting ready for this model, once: about {seconds:.0f} s left.")
-STILL = ("pause", "properties")  # scenes of the model in which time stands still
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_WATCHED = 2000  # particles, up to which it is told that they left the picture
 MOST_NAMED = 3  # of these, by their names
@@ -74,14 +74,13 @@ def follow(context: Context) -> None:
     view = context.view
     if view.followed is None:
         return
-    particle, (x, y) = view.followed
+    particle, before = view.followed
     if not particle.exists or particle.world is not context.model:
         view.followed = None
         return
-    here_x, here_y = drawn_positions(context.model)[particle.row].tolist()
-    centre = view.camera.centre
-    view.camera.centre = centre[0] + here_x - x, centre[1] + here_y - y
-    view.followed = particle, (here_x, here_y)
+    here, centre = drawn_at(context.model, particle), view.camera.centre
+    view.camera.centre = centre[0] + here[0] - before[0], centre[1] + here[1] - before[1]
+    view.followed = particle, here
 
 
 def _trace(context: Context) -> None:
@@ -180,7 +179,7 @@ def _show_readouts(context: Context) -> None:
 def _unsettled(context: Context) -> str:
     """The sentence that what was settled was edited since and is in equilibrium no more, "" if it is."""
     document = context.document
-    if context.scene not in STILL or document.is_undeformed or document.assessment.balanced:
+    if context.scene not in (PAUSE, PROPERTIES) or document.is_undeformed or document.assessment.balanced:
         return ""
     return tr(
         "The model was edited and is no longer in equilibrium. Press E for the new equilibrium (right click: settle)."

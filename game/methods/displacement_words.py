@@ -21,7 +21,6 @@ NAMES = (
     marked("Set 2: joints held, under load"),
     marked("Set 3: displacements alone"),
 )
-_TO_COME = ("", marked("follows in part 3"), marked("follows in part 4"))
 
 
 def message(guide: DisplacementGuide) -> str:
@@ -50,7 +49,8 @@ def hint(guide: DisplacementGuide) -> str:
 
 def captions(guide: DisplacementGuide) -> list[Caption]:
     """The captions of the three sets: name, and load or displacements."""
-    there, shown = len(guide.sets), begun_captions(guide, NAMES, _TO_COME)
+    to_come = "", marked("follows in part 3"), marked("follows in part 4")
+    there, shown = len(guide.sets), begun_captions(guide, NAMES, to_come)
     for i in range(min(there, 2)):
         shown[i] = (*shown[i], tr("the real load"))
     if there > 2:

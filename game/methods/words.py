@@ -25,7 +25,6 @@ NAMES = (
     marked("Set 2: released, under load"),
     marked("Set 3: the unknown alone"),
 )
-_TO_COME = ("", marked("follows in part 3"), marked("follows in part 5"))
 EXACT = 5  # significant digits of gaps and flexibilities, from which unknowns follow to 4
 
 
@@ -93,7 +92,8 @@ def captions(guide: ForceGuide) -> list[Caption]:
     """The captions of the three sets: name, load, and displacements once they are measured."""
     if guide.mechanism is not None:
         return [(tr(NAMES[0]),), (tr("A mechanism: nothing resists this motion"),), ("",)]
-    there, shown = len(guide.sets), begun_captions(guide, NAMES, _TO_COME)
+    to_come = "", marked("follows in part 3"), marked("follows in part 5")
+    there, shown = len(guide.sets), begun_captions(guide, NAMES, to_come)
     solution = guide.solution
     if solution is None or guide.part == 2:
         return shown

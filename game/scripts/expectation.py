@@ -21,8 +21,6 @@ from pinjoint.paths import PathError, locate, locate_one, readable
 
 _OF_SESSION = ("scene", "time", "message")
 _SECTIONS = ("energy", "force_method", "displacement_method", "count", "statics", "view")
-_NUMBERS = ("force", "delta_real", "delta_base", "delta_unit")  # of the force method
-_SETS = ("real", "base", "superposed")
 
 _EXPECTATION = re.compile(
     r"^(?P<path>.+?)\s*(?P<relation>[≈~=<>!]+)\s*(?P<value>.+?)(?:\s*(?:±|\+/?-)\s*(?P<slack>\S+))?\s*$"
@@ -234,11 +232,13 @@ def _of_force_method(session: Any, quantity: str) -> Any:
         raise NotFound("no redundant is chosen yet; choose one in part 2 first.")
     what, _, rod = quantity.partition(".")
     if rod:  # a row of the final table
-        of_set = _one_of({name: getattr(guide.solution, name) for name in _SETS}, what, "sets")
+        sets = {name: getattr(guide.solution, name) for name in ("real", "base", "superposed")}
+        of_set = _one_of(sets, what, "sets")
         return float(of_set.axial_force[guide.model.rods[rod].row])
     if quantity == "exact_force":
         return guide.exact[-1] if guide.exact is not None else None
-    found = {name: getattr(guide.solution, name) for name in _NUMBERS}
+    names = "force", "delta_real", "delta_base", "delta_unit"
+    found = {name: getattr(guide.solution, name) for name in names}
     return float(_one_of(found, quantity, "quantities of the force method").ravel()[-1])
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
 from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.field import Vector
 from pinjoint.components.language import tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import as_json, cut, remedy
@@ -82,12 +83,11 @@ def _is_finite(value: Any) -> bool:
     return not isinstance(value, float) or math.isfinite(value)
 
 
-_POINT = tuple[float, float]
 _SHAPES = {
     "press": Shape(str, "space"),
-    "over": Shape(_POINT, [1.0, 1.0]),
-    "click": Shape(_POINT, [1.0, 1.0]),
-    "drag": Shape(tuple[_POINT, _POINT], [[0.0, 0.0], [1.0, 1.0]]),
+    "over": Shape(Vector, [1.0, 1.0]),
+    "click": Shape(Vector, [1.0, 1.0]),
+    "drag": Shape(tuple[Vector, Vector], [[0.0, 0.0], [1.0, 1.0]]),
     "button": Shape(str, "ctrl+click"),
     "type": Shape(str, "200000"),
     "box": Shape(str, "stiffness"),
@@ -98,9 +98,9 @@ _SHAPES = {
     "steps": Shape(int, 128),
     "expect": Shape(str, "scene = pause"),
     "input": Shape(str, "click"),
-    "pixel": Shape(_POINT, [512.0, 300.0]),
+    "pixel": Shape(Vector, [512.0, 300.0]),
     "resize": Shape(tuple[float, float, float], [1280.0, 800.0, 1.0], lambda size: min(size) > 0.0),
-    "window": Shape(_POINT, [1280.0, 800.0], lambda size: min(size) > 0.0),
+    "window": Shape(Vector, [1280.0, 800.0], lambda size: min(size) > 0.0),
     "say": Shape(str, "Press Space."),
     "answer": Shape(Any, "Tension"),
     "clipboard": Shape(str, ""),

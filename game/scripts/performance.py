@@ -28,10 +28,7 @@ _BEAT = 0.7  # s between two actions
 REACH = 0.4  # s of a movement of the pointer
 READING = 1.2, 0.055  # s that a sentence stays: at least, and for each character
 PATIENCE = 6.0  # s of a run shown at its natural pace, before it goes faster and faster
-_HURRY = ("space", "return", "right", "click")
 DONE = marked("This is the end. Go on from here as you like; Ctrl+Z goes back, step by step.")
-
-_UNSEEN = {"expect", "resize", "window"}  # verbs without a pause after them
 
 
 class Screen(Protocol):
@@ -149,7 +146,7 @@ class Performance:
         if "say" in entry:
             text = entry["say"]
             self._say(tr(text))
-        elif not _UNSEEN & set(entry):
+        elif not entry.keys() & {"expect", "resize", "window"}:  # of which nothing is seen
             self._wait(_BEAT if "input" not in entry else 0.1 * _BEAT)
 
     def _say(self, text: str) -> None:
@@ -205,7 +202,7 @@ class Performance:
         pointer = screen.session.view.pointer
         pressed = [key for key, _ in screen.next_frame(wait=self._pace > 0.0).pressed]
         screen.session.view.pointer = pointer  # the mouse of the person does not count
-        self._hurried |= any(key in _HURRY for key in pressed)
+        self._hurried |= any(key in ("space", "return", "right", "click") for key in pressed)
         self._ended |= "escape" in pressed or screen.closed
 
     def _grow(self, points: int) -> None:

@@ -19,8 +19,6 @@ from pinjoint.documents.models import replace
 from pinjoint.sweeps.plan import RECORDED, Plan
 from pinjoint.sweeps.variation import INSTALL, SweepError
 
-SUFFIXES = (".csv", ".parquet")
-_NEEDED = {".parquet": "pyarrow", ".png": "matplotlib"}
 _MOST_PANELS = 12
 MOST_LINES = 12
 
@@ -161,12 +159,12 @@ def _short(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def check_output(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
+def check_output(path: Path, suffixes: Sequence[str] = (".csv", ".parquet")) -> None:
     """Refuse what could not be written in the end. Raises SweepError."""
     if path.suffix not in suffixes:
         endings = ", ".join(suffixes)
         raise SweepError("{file}: choose a file that ends with one of {endings}.", file=path, endings=endings)
-    module = _NEEDED.get(path.suffix)
+    module = {".parquet": "pyarrow", ".png": "matplotlib"}.get(path.suffix)
     if module is not None and importlib.util.find_spec(module) is None:
         raise SweepError(
             "A {suffix} file needs {module}; install it with: {command}",

@@ -13,7 +13,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.round_numbers import round_down
-from pinjoint.components.view import View, drawn_positions
+from pinjoint.components.view import View, drawn_at
 from pinjoint.systems.edit.picking import PARTICLE_REACH
 from pinjoint.systems.edit.placing import SNAP_REACH
 from pinjoint.systems.edit.rods import share_at
@@ -99,9 +99,7 @@ def arrow_end(view: View, start: Vector, value: Vector, scale: float) -> Vector:
 def borne_at(model: Model, view: View, element: Loaded, pixel: Vector) -> Vector:
     """The point (m) of what bears a load, as it is drawn, from which its arrow at a pixel stands off."""
     if isinstance(element, Particle | Load):
-        row = element.on if isinstance(element, Load) else element.row
-        x, y = drawn_positions(model)[row].tolist()
-        return x, y
+        return drawn_at(model, element.particle if isinstance(element, Load) else element)
     rod = element if isinstance(element, Rod) else model.rods[element.rod]
     return _drawn_at(rod, min(max(share_at(rod, view.camera.to_model(pixel)), 0.0), 1.0))
 
@@ -118,7 +116,7 @@ def dragged(model: Model, view: View, element: Loaded, pixel: Vector) -> list[Fi
         return [Rod.distributed_force] if any(element.distributed_force) else []
     on = element.particle if isinstance(element, Load) else element
     rim = on.radius * view.camera.scale / view.pixel_ratio
-    if element.moment and _away(view, drawn_positions(model)[on.row], pixel) <= rim + ARC:
+    if element.moment and _away(view, drawn_at(model, on), pixel) <= rim + ARC:
         return [kind.moment]
     return [kind.force] if any(element.force) else []
 

@@ -27,7 +27,6 @@ MOST_PARTS = 1000
 DIVISIONS = {2: marked("divide in two"), 4: marked("divide in four")}
 # Half a rod has half of the first and twice the others; sliders that move these move the first part only.
 _WITH_LENGTH, _AGAINST_LENGTH = ("prescribed_rest_length",), ("damping", "bending_damping")
-_OF_ENDS = "hinged", "end_springs", "plastic_rotation"
 
 Numbers = NDArray[np.float64]
 
@@ -77,7 +76,7 @@ def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list
         chain = [ends[0], *between, ends[1]]
         pairs = [(first.row, second.row) for first, second in itertools.pairwise(chain)]
         columns = _columns(model, rod, lengths)
-        for name in _OF_ENDS:
+        for name in ("hinged", "end_springs", "plastic_rotation"):
             columns[name][1:, 0] = columns[name][:-1, 1] = 0
         names = _names(model, rod, last + 1)
         for field, values in columns.items():

@@ -30,7 +30,6 @@ FILES = "files "  # prefix of the "key" of files dropped on the window: their pa
 MODIFIERS = {"ctrl+": "ctrl+", "control+": "ctrl+", "cmd+": "ctrl+", "shift+": "shift+"}
 ALSO_CALLED = {"esc": "escape", "enter": "return", "del": "delete", "spacebar": "space", " ": "space"}
 ALSO_CALLED |= {"pageup": "page up", "pagedown": "page down"}
-UNBOUND = ("insert", "caps lock", "print screen", "menu", *(f"f{number}" for number in range(1, 13)))
 
 # In the order in which the help lists them.
 PURPOSES = (
@@ -177,7 +176,8 @@ class Actions(UserDict[str, Action]):
         name = ALSO_CALLED.get(name, name)
         if not self._known:
             bound = (binding.key for _, binding in self.bound())
-            self._known = {key.removeprefix("ctrl+").removeprefix("shift+") for key in bound} | {*UNBOUND}
+            self._known = {key.removeprefix("ctrl+").removeprefix("shift+") for key in bound}
+            self._known |= {"insert", "caps lock", "print screen", "menu", *(f"f{n}" for n in range(1, 13))}
         if len(name) != 1 and name not in self._known:
             raise ValueError(missing(marked("keys"), text, sorted(key for key in self._known if len(key) > 1)))
         if len(name) == 1 and "ctrl+" not in held:

@@ -13,15 +13,11 @@ from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.rod import bends
 from pinjoint.components.round_numbers import round_near
-from pinjoint.systems.physics.bending import deformations, free_coordinates, stiffness_matrix
-
-Array = NDArray[np.float64]
+from pinjoint.systems.physics.bending import Array, deformations, free_coordinates, stiffness_matrix
 
 DENSE = 100  # particles up to which a full matrix is solved, without loading a library for others
 _SLIGHTLY = 1e-10  # of the largest stiffness: holds mechanisms, which then move far, but not infinitely
-_SHAKEN = (
-    1e-8  # of the largest stiffness × size: forces by which mechanisms move far, and slender structures hardly
-)
+_SHAKEN = 1e-8  # of the largest stiffness × size: forces that move mechanisms far, slender structures hardly
 _PERIOD_SHOWN = 2.0  # s in which one oscillation is shown
 _CREEP_SHOWN = 0.7  # s in which an overdamped model creeps by 1 − 1/e of the way
 _LOADING_SHOWN = 4.0  # s in which a load history is shown

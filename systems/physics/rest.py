@@ -11,11 +11,10 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import is_sprung, spring_stiffness
 from pinjoint.components.rod import strut_energy
 from pinjoint.systems.islands import Rows
-from pinjoint.systems.physics.bending import bending_energy, bowing_work, levers
+from pinjoint.systems.physics.bending import Array, bending_energy, bowing_work, levers
 from pinjoint.systems.physics.kernels import LOST_UNSEEN, REST_RESIDUAL, SMALL_SHARE
 from pinjoint.systems.program.entries import MEASURED, Measure
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 UNSEEN = 1e-6  # residual of a motion that is lost in rounding, of the largest force; larger: it is not at rest

@@ -11,9 +11,7 @@ from numpy.typing import NDArray
 from pinjoint.components.model import Model
 from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.rod import bends
-from pinjoint.systems.physics.bending import slopes
-
-Array = NDArray[np.float64]
+from pinjoint.systems.physics.bending import Array, slopes
 
 LANCZOS_STEPS = 24  # more: closer bounds; the bound is safe at any number
 

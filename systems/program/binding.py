@@ -55,7 +55,6 @@ KERNELS = ("kernel", "branch", "margin", "potential")  # of a system, as its att
 WIDEST_ROW = 64  # numbers of an array that a kernel gets, as a tuple; more would take long to compile
 
 _KINDS = ("rods", "ends", "particles", "rotations", "pairs", "loads")
-ROWS_OF = {"pairs": "particles", "rotations": "particles", "ends": "rods"}  # tables of kinds that are none
 
 
 class ProgramError(Explained, ValueError):
@@ -140,7 +139,8 @@ class Bound:
     @property
     def rows(self) -> str:
         """The table whose rows its kernel is given."""
-        return ROWS_OF.get(self.each, self.each) or "rods"
+        tables = {"pairs": "particles", "rotations": "particles", "ends": "rods", "": "rods"}
+        return tables.get(self.each, self.each)
 
     @property
     def purpose(self) -> str:

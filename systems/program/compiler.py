@@ -421,11 +421,11 @@ def _end(ended: threading.Event, seconds: float, kernels: Iterable[Callable[...,
 # --- on disk ---------------------------------------------------------------------------------------
 
 
-def forget_unused(days: float = 60.0) -> None:
-    """Delete modules unused for so many days, mostly of former versions, and what killed processes left."""
+def forget_unused() -> None:
+    """Delete modules unused for two months, mostly of former versions, and what killed processes left."""
     folder, now = cache.folder(), time.time()
     for path in (*folder.glob("pinjoint_program_*.types"), *folder.glob("pinjoint_program_*.tmp")):
         with contextlib.suppress(OSError):
-            if now - path.stat().st_mtime > 86400.0 * days:
+            if now - path.stat().st_mtime > 60 * 86400.0:
                 for old in (*folder.glob(f"__pycache__/{path.stem}.*"), *folder.glob(f"{path.stem}.*")):
                     old.unlink(missing_ok=True)

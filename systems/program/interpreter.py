@@ -27,6 +27,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from enum import IntEnum
 from itertools import count
+from operator import attrgetter
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
@@ -133,7 +134,6 @@ class _Part:
         self._whole[self._start + k] = value
 
 
-_TEMPORARY = "t{}__"  # names that end like this are found in no kernel
 _HELPERS = {
     "quotient__": _quotient,
     "power__": _power,
@@ -205,7 +205,7 @@ class _Rewriting(ast.NodeTransformer):
         """A value that is used twice: an expression that computes it, and one for the second use."""
         if isinstance(node, ast.Name | ast.Constant):
             return node, node
-        name = _TEMPORARY.format(next(self._temporaries))
+        name = f"t{next(self._temporaries)}__"  # names that end like this are found in no kernel
         return ast.NamedExpr(ast.Name(name, ast.Store()), node), ast.Name(name, ast.Load())
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
@@ -404,11 +404,6 @@ _Defined = ast.FunctionDef | ast.Lambda
 _parsed: dict[str, dict[int, list[_Defined]]] = {}  # by file, what of it is not rewritten yet
 
 
-def _at_top(module: ast.Module) -> Iterable[ast.AST]:
-    """The statements of a module, among which most kernels are; looking through all of it takes ten times as long."""
-    return module.body
-
-
 def _definitions(file: str, nodes: Callable[[ast.Module], Iterable[ast.AST]]) -> dict[int, list[_Defined]]:
     """The functions among nodes of a file, by the line on which they, or their decorators, begin."""
     linecache.checkcache(file)
@@ -430,7 +425,8 @@ def _definitions(file: str, nodes: Callable[[ast.Module], Iterable[ast.AST]]) ->
 def _definition(plain: Any) -> ast.FunctionDef:
     """The definition of a function, to be changed: one that was changed before is read again."""
     code, file = plain.__code__, plain.__code__.co_filename
-    for nodes in (None, _at_top, ast.walk):
+    at_top = attrgetter("body")  # where most kernels are; to look through all takes ten times as long
+    for nodes in (None, at_top, ast.walk):
         if nodes is not None:
             _parsed[file] = _definitions(file, nodes)
         there = _parsed.get(file, {}).get(code.co_firstlineno, [])

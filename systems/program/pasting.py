@@ -18,7 +18,6 @@ _LINE = re.compile(r"( *)insert\((\w+)\)")
 _EXPRESSION = re.compile(r"insert\((\w+)\)")
 _ON_LINES = re.compile(r"\(\n((?:[^()]|\([^()]*\))*\*columns),?\s*\)")
 _WIDTH = 112
-_GROUPS = "state|forces|scratch|bounds|kept|observed"
 
 
 @cache
@@ -32,7 +31,7 @@ def source_of(function: Callable[..., Any]) -> str:
 def _head_and_body_of(function: Callable[..., Any]) -> tuple[str, Sequence[str]]:
     """The head of a function, stars before its groups, and the lines of its body."""
     head, body = source_of(function).split(":\n", 1)
-    head = re.sub(rf"(?<=[(\s])({_GROUPS})(?=[,)])", r"*\1", head)
+    head = re.sub(r"(?<=[(\s])(state|forces|scratch|bounds|kept|observed)(?=[,)])", r"*\1", head)
     return head, body.splitlines()
 
 

@@ -19,7 +19,6 @@ from pinjoint.systems.program.blocks import Layout, Numbers
 from pinjoint.systems.program.program import OBSERVED, Program
 from pinjoint.systems.program.writer import PUSHED, VERY_MANY, form_of
 
-_QUICK = ("omp", "tbb")  # threading layers that start the cores in some microseconds
 _SPINS = "10000"  # some 0.1 ms that a core waits awake: waking it costs as much as a step of 10 000 rods
 _WORTHWHILE = 100_000  # rods from which a layer that takes 50 µs to start the cores is worth it
 _home = os.getpid()
@@ -171,7 +170,8 @@ class ReorderedProgram(Program):
         if available > 1:
             numba.set_num_threads(available)
             layer = numba.threading_layer()  # type: ignore[attr-defined]
-            if layer not in _QUICK and self._rows("rods") < _WORTHWHILE:
+            quick = layer in ("omp", "tbb")  # they start the cores in some microseconds
+            if not quick and self._rows("rods") < _WORTHWHILE:
                 return 1
         return available
 

@@ -141,7 +141,7 @@ class Programs:
     @property
     def ready(self) -> bool:
         """False if the next step or observation needs a program that is not loaded yet."""
-        return self._bound is not None or self._key(self.plan) in self._made
+        return self._bound is not None or self._key in self._made
 
     # --- the one that is bound -----------------------------------------------------------------------
 
@@ -178,7 +178,7 @@ class Programs:
         """Bind what moves the model to its columns. A mod whose system cannot join the program is switched off."""
         while self._bound is None:
             try:
-                self._bound = self._bound_to(self.plan)
+                self._bound = self._of_plan()
                 self.bindings += 1
             except ProgramError as error:
                 if not blame_mod(error) and not self.blame_by_leaving_out(self._makes_program, str(error)):
@@ -216,7 +216,7 @@ class Programs:
 
     def _makes_program(self) -> bool:
         try:
-            self._bound_to(self.plan)
+            self._of_plan()
         except ProgramError:
             return False
         return True
@@ -230,25 +230,24 @@ class Programs:
         self._before = self._integrator or self._before
         self._plan = self._integrator = self._bound = self._observer = None
 
-    def _bound_to(self, plan: list[StepSystem]) -> Dynamics:
-        key = self._key(plan)
+    def _of_plan(self) -> Dynamics:
+        """What moves the model by the present plan, bound to it. Raises ProgramError."""
+        key = self._key
         if key in self._made:
             self._made[key].bind()
         else:
             started = time.perf_counter()
-            self._made[key] = self._make(plan)
+            self._made[key] = self._make()
             self.compile_seconds += time.perf_counter() - started
         return self._made[key]
 
-    def _make(self, plan: list[StepSystem]) -> Dynamics:
-        if not self.integrator.exact:
-            return self._made_by(self.integrator, plan)
-        return Flight(self._model, self._impacts, [law for law in plan if isinstance(law, Law)])
-
-    def _made_by(self, integrator: Integrator, plan: list[StepSystem]) -> Program:
-        """The program of a plan with an integrator. Raises ProgramError for whatever is wrong with that of a mod."""
+    def _make(self) -> Dynamics:
+        """Raises ProgramError, also for whatever is wrong with the integrator of a mod."""
+        integrator = self.integrator
+        if integrator.exact:
+            return Flight(self._model, self._impacts, [law for law in self.plan if isinstance(law, Law)])
         try:
-            return make_program(self._model, plan, integrator)
+            return make_program(self._model, self.plan, integrator)
         except ProgramError:
             raise
         except Exception as error:
@@ -261,5 +260,6 @@ class Programs:
             )
             raise ProgramError(message, integrator) from error
 
-    def _key(self, plan: list[StepSystem]) -> tuple[str, ...]:
-        return kind_of(self._model, self.integrator, plan)
+    @property
+    def _key(self) -> tuple[str, ...]:
+        return kind_of(self._model, self.integrator, self.plan)

@@ -21,8 +21,6 @@ from pinjoint.systems.run.step_size import StepSize
 FAILURES = (StopReason.DIVERGED, StopReason.UNRESOLVED, StopReason.FAILED)
 MOST_HALVINGS = 6  # of an automatic step before a run is given up
 
-MOVING = *MOTION, *TURNING, "rods.plastic_strain", "rods.plastic_rotation"
-
 
 class Recovery:
     """Keeps the last good state of one model's run. safe: that state, or None."""
@@ -45,7 +43,8 @@ class Recovery:
         Far from where a rod was drawn, a creep may be lost in rounding.
         """
         before, self.safe, self._halvings = self.safe, state, 0
-        return before is None or not all(same(before.columns[name], state.columns[name]) for name in MOVING)
+        moving = *MOTION, *TURNING, "rods.plastic_strain", "rods.plastic_rotation"
+        return before is None or not all(same(before.columns[name], state.columns[name]) for name in moving)
 
     def without_mod(self, reason: StopReason) -> bool:
         """Switch off the mod without which the steps lead on, and return to the good state; False if there is none.

@@ -45,10 +45,6 @@ from pinjoint.systems.run.step_size import StepSize, begin_steps
 from pinjoint.systems.schedule import Plan, Schedule
 
 # Messages of runs that diverged, and of one that does not get on.
-UNRESOLVED = marked(
-    "The simulation diverged near t = {time}: no time step, however small, leads on from there."
-)
-FROM_NOWHERE = marked("The simulation diverged near t = {time}: energy appeared from nowhere.")
 SAME = marked(
     "The simulation diverged near t = {time}: after each {steps} steps the model is in the same state again."
 )
@@ -399,10 +395,12 @@ class Simulation:
         if self._recovery.without_mod(reason):
             self.before_change()  # what is lost with the mod counts as an edit
         elif unresolved or not self._recovery.with_shorter_steps():
-            self.reason, self.message = (
-                StopReason.DIVERGED,
-                self._recovery.give_up(UNRESOLVED if unresolved else FROM_NOWHERE),
-            )
+            why = marked("The simulation diverged near t = {time}: energy appeared from nowhere.")
+            if unresolved:
+                why = marked(
+                    "The simulation diverged near t = {time}: no time step, however small, leads on from there."
+                )
+            self.reason, self.message = StopReason.DIVERGED, self._recovery.give_up(why)
             return
         self.reason = StopReason.DONE
 

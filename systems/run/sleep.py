@@ -17,7 +17,8 @@ from pinjoint.components.load import load_ends
 from pinjoint.components.model import Model
 from pinjoint.systems.collision.system import persistent_contacts
 from pinjoint.systems.islands import IMMOVABLE, Rows, islands
-from pinjoint.systems.physics.rest import Array, Mask, RestMeasure
+from pinjoint.systems.physics.bending import Array
+from pinjoint.systems.physics.rest import Mask, RestMeasure
 from pinjoint.systems.program.entries import ASLEEP
 from pinjoint.systems.program.program import Program
 from pinjoint.systems.program.reordered import ReorderedProgram

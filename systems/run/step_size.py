@@ -28,9 +28,6 @@ OBSERVED = 1.0 / 120.0  # s shown, at the natural pace, between two looks at exa
 PASSED = 1e-4  # share of the time so far between two looks at exact flight, so that any time is reached in some steps
 DEFAULT_INTEGRATOR = "velocity_verlet"
 
-# Columns of the clock; 0 where error control begins anew.
-ERROR_CONTROL = ("step_error", "largest_displacement", "largest_speed", "largest_rotation", "largest_spin")
-
 
 def begin_steps(model: Model, size: float) -> None:
     """From now on steps have this size (s), counted from the present time."""
@@ -110,7 +107,8 @@ class StepSize:
     def first(self) -> float:
         """The step size (s) with which a document begins."""
         found, limit = self.look_up(), 0.0
-        for name in ERROR_CONTROL:
+        # Error control begins anew.
+        for name in ("step_error", "largest_displacement", "largest_speed", "largest_rotation", "largest_spin"):
             self._model.writable(f"clock.{name}")[0] = 0.0
         if self._controls_error:
             size, limit = self._first_controlled(found), self._limit()

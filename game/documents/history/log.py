@@ -50,8 +50,6 @@ class Run:
 
 Entry = Edit | Run
 
-_NOTHING = Snapshot({}, {})
-
 
 class Log:
     """Entries, the newest last; states beyond `memory` bytes go to a temporary file, the oldest first.
@@ -115,7 +113,7 @@ class Log:
                 return False
             self._places[self._oldest] = place
             self._held -= entry.whole.state.nbytes
-            self._entries[self._oldest] = _with_state(entry, _NOTHING)
+            self._entries[self._oldest] = _with_state(entry, Snapshot({}, {}))
         self._oldest += 1
         return True
 

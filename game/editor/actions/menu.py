@@ -12,7 +12,7 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import HUBS
 from pinjoint.components.tags import Selected
-from pinjoint.components.view import drawn_positions
+from pinjoint.components.view import drawn_at
 from pinjoint.editor.context import Context, tell
 from pinjoint.editor.scenes.methods import ForceMethod
 from pinjoint.systems.edit import Refusal
@@ -68,9 +68,8 @@ def _environment(context: Context, pixel: Vector) -> None:
 def _follow(context: Context, pixel: Vector) -> None:
     """Let the view go with the selected particle, or, if it does so, stay where it is."""
     (particle, *_), view = _particles(context), context.view
-    x, y = drawn_positions(context.model)[particle.row].tolist()
     stays = view.followed is not None and view.followed[0] is particle
-    view.followed, view.fitted = None if stays else (particle, (x, y)), False
+    view.followed, view.fitted = None if stays else (particle, drawn_at(context.model, particle)), False
 
 
 def _particles(context: Context) -> list[Particle]:

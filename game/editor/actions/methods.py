@@ -129,16 +129,19 @@ def _pick_axis(axis: int, context: Context, guide: ForceGuide, pixel: Vector) ->
 
 
 _AXIS = _where(lambda guide: guide.axis_wanted is not None)
-_CLAMP = _where(lambda guide: guide.clamp_wanted)
 action("release x", "x", "release the support along x", _OF_FORCE, enabled=_AXIS)(
     _guided(partial(_pick_axis, 0))
 )
 action("release y", "y", "release the support along y", _OF_FORCE, enabled=_AXIS)(
     _guided(partial(_pick_axis, 1))
 )
-action("release moment", "m", "release the moment of the clamp", _OF_FORCE, enabled=_CLAMP)(
-    _guided(partial(_pick_axis, 2))
-)
+action(
+    "release moment",
+    "m",
+    "release the moment of the clamp",
+    _OF_FORCE,
+    enabled=_where(lambda guide: guide.clamp_wanted),
+)(_guided(partial(_pick_axis, 2)))
 
 
 @action("next convention", "c", "change the convention: textbook or thesis", _OF_FORCE)

@@ -76,11 +76,6 @@ def _drawing_for(context: Context, tool: str) -> Drawing:
     return TypePoint(context, tool, begin)
 
 
-def _accept_typed(context: Context, pixel: Vector) -> None:
-    assert isinstance(context.gesture, Drawing)
-    context.gesture.accept(context, pixel)
-
-
 def _retype(context: Context, kept: int | None) -> None:
     """Take back the last character that was typed, or all; a place that is not typed any more is given up."""
     assert isinstance(context.gesture, Drawing)
@@ -89,6 +84,6 @@ def _retype(context: Context, kept: int | None) -> None:
         context.gesture = None
 
 
-action("accept typed")(_accept_typed)
+action("accept typed")(lambda context, pixel: context.gesture.accept(context, pixel))
 action("erase typed", repeats=True)(lambda context, pixel: _retype(context, -1))
 action("leave typed")(lambda context, pixel: _retype(context, 0))

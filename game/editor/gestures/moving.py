@@ -16,7 +16,7 @@ from pinjoint.components.language import begun, joined, marked, tr
 from pinjoint.components.load import DIRECTIONS, SpanLoad
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.particle import Particle
-from pinjoint.components.view import BETWEEN, Preview, drawn_positions
+from pinjoint.components.view import BETWEEN, Preview, drawn_at
 from pinjoint.editor.context import Context, Gesture, tell
 from pinjoint.editor.gestures.drawing import STEP, along, scale_said
 from pinjoint.systems.edit import Refusal
@@ -91,7 +91,7 @@ class Move(Placing):
         particles = self._movable.particles
         if self._leader < len(particles):
             leader = particles[self._leader]
-            x, y = np.subtract(drawn_positions(context.model)[leader.row], leader.position).tolist()
+            x, y = np.subtract(drawn_at(context.model, leader), leader.position).tolist()
             check_free(context.model, context.view, (target[0] + x, target[1] + y), besides=particles)
 
 
