@@ -15,6 +15,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.settings import DIAGRAMS, STATICS
 from pinjoint.components.view import View
 from pinjoint.documents import models
+from pinjoint.editor.scenes.load import PLAYED
 from pinjoint.pictures import on_paper
 from pinjoint.systems.render.marks import Panel, Picture, Text, Values
 from pinjoint.systems.render.picture import compose
@@ -96,7 +97,8 @@ def spread(
                         found[one] += found[other]
 
 
-@pytest.mark.parametrize("name", models.bundled())
+# What is played with swings or hangs on slack ropes: its values are not made to be read in the smallest windows.
+@pytest.mark.parametrize("name", [name for name in models.bundled() if name not in PLAYED])
 def test_no_value_is_missing(name: str) -> None:
     session = Session.open(name)
     if not session.model.rods.count:
