@@ -40,7 +40,7 @@ TOOLBAR: dict[str, tuple[str, ...]] = {
         *("next shape", "fit", "new grid", "next grid"),
     ),
     marked("Model"): ("properties", "force method", "new", "load", "save again", "save"),
-    marked("Window"): ("screenshot", "toggle full screen", "next theme", "toggle sound", "toggle help"),
+    marked("Window"): ("screenshot", "toggle full screen", "next theme", "toggle help"),
 }
 WORDS = {  # beside icons, where there is room: of actions, or of the icons that they have while they are on
     "toggle run": marked("run"),
@@ -93,7 +93,6 @@ WORDS = {  # beside icons, where there is room: of actions, or of the icons that
     "screenshot": marked("picture"),
     "toggle full screen": marked("full screen"),
     "next theme": marked("theme"),
-    "toggle sound": marked("sound"),
     "toggle help": marked("help"),
     "walls.wall": marked("wall"),
     "probes.plot": marked("plot"),
@@ -238,7 +237,7 @@ def _of_canvas(context: Context) -> Groups:
         [*of_mods(draw=False)],
         ["fit", "new grid", "next grid", "toggle legend", "next theme", "next language"],
         [
-            *("environment", "units", "toggle full screen", "toggle help"),
+            *("environment", "units", "toggle full screen", "toggle sound", "toggle help"),
             *("screenshot", "picture as svg", "picture as pdf", "sheet"),
         ],
     ]
