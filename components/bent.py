@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array, Rows
 from pinjoint.components.cases import Acting
 from pinjoint.components.derived import (
     HALF_SINE,
@@ -26,9 +27,6 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import has_struts
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.spans import Curves, Kinks, Stretches, extremes
-
-Array = NDArray[np.float64]
-Rows = NDArray[np.intp]
 
 AXIAL, MOMENT, SHEAR = DIAGRAMS
 FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn of it

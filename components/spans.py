@@ -15,12 +15,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pinjoint.components.arrays import Rows
 from pinjoint.components.cases import Acting, factors
 from pinjoint.components.field import Column
 from pinjoint.components.load import DIRECTIONS
 from pinjoint.components.world import World
-
-Rows = NDArray[np.intp]
 
 _FACTORIALS = np.array([math.factorial(n) for n in range(7)], dtype=np.float64)
 # Between which a zero of a polynomial is looked for, and the shares that are one to it.

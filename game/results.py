@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, deflections, inner_forces
 from pinjoint.components.derived import chord_rotation, on_axis, rigid_slopes
 from pinjoint.components.field import CM, ENDS, MOVED
@@ -29,7 +30,7 @@ from pinjoint.components.rod import (
 from pinjoint.components.spans import extremes
 from pinjoint.components.wording import as_said
 from pinjoint.components.written import ROUNDING
-from pinjoint.tables import Array, Column, Table, Words
+from pinjoint.tables import Column, Table, Words
 
 _KN, _KNM, _MRAD, _PERCENT = ("kN", 1.0), ("kN·m", 1.0), ("mrad", 1e3), ("%", 100.0)
 _ALL_NOTHING = 1e-3  # m, kN, kN·m, rad: numbers that are all smaller than the share ROUNDING of it are rounding

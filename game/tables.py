@@ -7,13 +7,11 @@ from collections.abc import Iterator, Sequence
 from typing import Any, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components import written
+from pinjoint.components.arrays import Array
 from pinjoint.components.field import on_screen
 from pinjoint.components.language import decimals
-
-Array = NDArray[np.float64]
 
 _SMALL = 1e-2  # smaller numbers are written as multiples of a power of 1000
 

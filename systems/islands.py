@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Rows
 from pinjoint.components.model import Model
-
-Rows = NDArray[np.intp]
 
 IMMOVABLE = 0  # the island of particles that are held in both directions
 

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components import Model, Plot, Readout, Vector, written
+from pinjoint.components.arrays import Array
 from pinjoint.components.language import marked, tr
 from pinjoint.components.rod import nodes
 from pinjoint.mods import App
@@ -29,7 +29,6 @@ ICON = (
     ),
 )
 
-Array = NDArray[np.float64]
 
 _asked: weakref.WeakKeyDictionary[Context, bool] = weakref.WeakKeyDictionary()
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import CM, Field, FieldError, Handle, Pieces, Selected, Table, Vector
+from pinjoint.components.arrays import Rows
 from pinjoint.components.language import marked
 from pinjoint.components.tags import Hovered
 from pinjoint.mods import App
@@ -16,7 +17,7 @@ from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels.nearness import LINE
 from pinjoint.systems.render.labels.occupancy import STRONG
 from pinjoint.systems.render.labels.placing import Label
-from pinjoint.systems.render.marks import Discs, Mark, Points, Rows, Strokes
+from pinjoint.systems.render.marks import Discs, Mark, Points, Strokes
 from pinjoint.systems.render.model.sheet import Sheet
 from pinjoint.systems.render.model.structure import HALO_OPACITY
 from pinjoint.systems.render.model.values import BACKING, beside, half_sizes

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.arrays import Array
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
@@ -23,7 +24,7 @@ from pinjoint.methods.tables import Tables
 from pinjoint.methods.words import EXACT
 from pinjoint.systems.schedule import Schedule
 from pinjoint.systems.statics.displacement_method import Solution, solve
-from pinjoint.systems.statics.equations import Array, largest
+from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.superposition import SetState
 from pinjoint.tables import Column, Table
 

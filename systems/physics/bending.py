@@ -7,12 +7,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.derived import chord_rotation, on_axis, rigid_slopes
 from pinjoint.components.model import Model
 from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.rod import bends
-
-Array = NDArray[np.float64]
 
 
 def slopes(model: Model) -> Array:

@@ -7,13 +7,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.cases import factor_of_each
 from pinjoint.components.load import loads_end, varying
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.rod import bends
 from pinjoint.components.round_numbers import round_near
-from pinjoint.systems.physics.bending import Array, deformations, free_coordinates, stiffness_matrix
+from pinjoint.systems.physics.bending import deformations, free_coordinates, stiffness_matrix
 
 DENSE = 100  # particles up to which a full matrix is solved, without loading a library for others
 _SLIGHTLY = 1e-10  # of the largest stiffness: holds mechanisms, which then move far, but not infinitely

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array, Rows
 from pinjoint.components.model import Model
 from pinjoint.components.particle import is_sprung, spring_stiffness
 from pinjoint.components.rod import strut_energy
-from pinjoint.systems.islands import Rows
-from pinjoint.systems.physics.bending import Array, bending_energy, bowing_work, levers
+from pinjoint.systems.physics.bending import bending_energy, bowing_work, levers
 from pinjoint.systems.physics.kernels import LOST_UNSEEN, REST_RESIDUAL, SMALL_SHARE
 from pinjoint.systems.program.entries import MEASURED, Measure
 

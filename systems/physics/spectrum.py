@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.model import Model
 from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.rod import bends
-from pinjoint.systems.physics.bending import Array, slopes
+from pinjoint.systems.physics.bending import slopes
 
 LANCZOS_STEPS = 24  # more: closer bounds; the bound is safe at any number
 

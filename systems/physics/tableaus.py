@@ -11,9 +11,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pinjoint.components.arrays import Array
+
 Sparse = dict[int, float]  # by stage, zeros left out
 
 

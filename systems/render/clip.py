@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pinjoint.systems.render.marks import Points, Rows
+from pinjoint.components.arrays import Rows
+from pinjoint.systems.render.marks import Points
 
 
 def clip_segments(start: Points, end: Points, low: Points, high: Points) -> tuple[Points, Points, Rows]:

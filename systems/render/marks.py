@@ -19,7 +19,6 @@ from pinjoint.systems.render.theme import Colour
 
 Points = NDArray[np.float64]  # (…, 2)
 Values = NDArray[np.float64]
-Rows = NDArray[np.intp]
 Truths = NDArray[np.bool_]
 Owner = tuple[str, int]  # the table and row of an element
 Owners = tuple[str, NDArray[np.intp]]

@@ -15,9 +15,10 @@ from importlib.resources import files
 
 import numpy as np
 
+from pinjoint.components.arrays import Rows
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.mistake import WrongValue
-from pinjoint.systems.render.marks import Points, Rows, Stamps
+from pinjoint.systems.render.marks import Points, Stamps
 
 Part = tuple[str, tuple[float, ...]]
 Parts = list[tuple[str, Points]]  # ("ink" or "hollow", corners (k, 2)), in painter's order

@@ -12,12 +12,12 @@ import sys
 
 import numpy as np
 
+from pinjoint.components.arrays import Array, Rows
 from pinjoint.components.field import Role
 from pinjoint.components.load import load_ends
 from pinjoint.components.model import Model
 from pinjoint.systems.collision.system import persistent_contacts
-from pinjoint.systems.islands import IMMOVABLE, Rows, islands
-from pinjoint.systems.physics.bending import Array
+from pinjoint.systems.islands import IMMOVABLE, islands
 from pinjoint.systems.physics.rest import Mask, RestMeasure
 from pinjoint.systems.program.entries import ASLEEP
 from pinjoint.systems.program.program import Program

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, TypeAlias, Union
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array, Rows
+
 if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix
 
-Array = NDArray[np.float64]
-Rows = NDArray[np.intp]
 Matrix: TypeAlias = Union[Array, "csc_matrix"]  # full up to DENSE unknowns, else sparse
 
 SYMMETRIC = {"SymmetricMode": True}  # pivots on the diagonal

@@ -13,13 +13,10 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import ROUND_OFF, Array, Flags
 from pinjoint.components.derived import on_axis
 from pinjoint.components.model import Model
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-
-ROUND_OFF = float(np.finfo(np.float64).eps)
 UNLIMITED = 1e200  # kN·m, of ends without a plastic moment, with which one may compute
 SENSES = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)]  # in which both ends may flow
 WITHIN = 2.5  # −N L₀²/EI of one rod, up to which its cubic bends as compression makes it

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pinjoint.components.arrays import Array, Rows
 from pinjoint.components.derived import on_axis
 from pinjoint.components.language import plural, tr
 from pinjoint.components.mistake import WrongValue
@@ -26,11 +27,12 @@ from pinjoint.components.wording import brief
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import needed_parts
-from pinjoint.systems.statics.equations import SOFT, Array, Response, Rows, Structure, normalised, upright
+from pinjoint.systems.statics.equations import SOFT, Structure, normalised, upright
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, divide_named, rod_names
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.factor import Factor, pseudo_random, regular, shifted, unresisted
+from pinjoint.systems.statics.response import Response
 from pinjoint.systems.statics.state import Start, StaticState
 from pinjoint.systems.statics.theory import FULL, linear
 

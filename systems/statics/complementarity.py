@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from pinjoint.systems.statics.equations import Array, Flags
+from pinjoint.components.arrays import Array, Flags
 
 ENUMERATED = 10  # rods up to which all sets are tried if pivoting does not end
 PIVOTS = 200

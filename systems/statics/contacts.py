@@ -11,10 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pinjoint.components.arrays import Array, Flags, Rows
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import Obstacles, obstacles
 from pinjoint.systems.broad_phase import near_pairs, nearest
-from pinjoint.systems.statics.equations import Array, Flags, Rows, Structure, largest
+from pinjoint.systems.statics.equations import Structure, largest
 from pinjoint.systems.statics.factor import is_stable
 from pinjoint.systems.statics.follow import Path, Point
 from pinjoint.systems.statics.relax import BALANCED, creep, has_run_away

@@ -18,10 +18,11 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import qr
 
+from pinjoint.components.arrays import Array, Flags
 from pinjoint.components.model import Model
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.wording import brief
-from pinjoint.systems.statics.equations import Array, Flags, Structure
+from pinjoint.systems.statics.equations import Structure
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.force_method import real_structure
 from pinjoint.systems.statics.superposition import ROUNDING, SetState, Superposition, settled_supports

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.arrays import ROUND_OFF, Array, Flags, Rows
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, forces_along, inner_forces
 from pinjoint.components.cases import Acting, choose, settled
 from pinjoint.components.derived import initial_slopes, moments_along, on_joints, unforced
@@ -28,9 +29,10 @@ from pinjoint.components.spans import Curves, Kinks, extremes
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.wording import as_said, brief, missing
 from pinjoint.components.world import Shown
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest, of_rods
+from pinjoint.systems.statics.equations import Structure, largest
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.external import External
+from pinjoint.systems.statics.response import of_rods
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import Start
 from pinjoint.systems.statics.theory import FirstOrder

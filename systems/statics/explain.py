@@ -7,10 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from pinjoint.components import language, written
+from pinjoint.components.arrays import Array, Flags, Rows
 from pinjoint.components.language import begun, joined, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.wording import cut
-from pinjoint.systems.statics.equations import TURNS_ONLY, Array, Flags, Rows, largest, of_axes
+from pinjoint.systems.statics.equations import TURNS_ONLY, largest
+from pinjoint.systems.statics.response import of_axes
 
 NAMED = 5  # at most so many by name, then "and 7 more"
 DIRECTIONS = 3  # at most so many, then "and 7 more"

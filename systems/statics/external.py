@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.arrays import Array, Rows
 from pinjoint.components.bent import borne_between
 from pinjoint.components.cases import Acting, idle_settlement, unknown_case
 from pinjoint.components.language import plural, tr
@@ -14,7 +15,7 @@ from pinjoint.components.load import static_factor
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends, nodes, rigid_joints
 from pinjoint.components.theory import EXACT, FIRST_ORDER
-from pinjoint.systems.statics.equations import Array, Rows, Structure
+from pinjoint.systems.statics.equations import Structure
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.explain import listed
 

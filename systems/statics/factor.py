@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pinjoint.components.arrays import ROUND_OFF, Array, Flags
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.assembly import SYMMETRIC, Matrix
-from pinjoint.systems.statics.equations import ROUND_OFF, SOFT, Array, Flags, Response, Structure
+from pinjoint.systems.statics.equations import SOFT, Structure
+from pinjoint.systems.statics.response import Response
 
 if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix

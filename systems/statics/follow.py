@@ -13,21 +13,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pinjoint.components.arrays import ROUND_OFF, Array, Flags
 from pinjoint.systems.statics.behind import rest
 from pinjoint.systems.statics.complementarity import yielding_set, yielding_sets
-from pinjoint.systems.statics.equations import (
-    AT_LIMIT,
-    ROUND_OFF,
-    Array,
-    Branches,
-    Flags,
-    Piece,
-    Response,
-    Structure,
-    largest,
-    of_axes,
-)
+from pinjoint.systems.statics.equations import AT_LIMIT, Structure, largest
 from pinjoint.systems.statics.factor import Factor, regular
+from pinjoint.systems.statics.response import Branches, Piece, Response, of_axes
 
 LARGEST_MOVE = 0.1  # of a rod's length, in one increment; larger: fewer increments, less sure of the branch
 MISS = 0.2  # share of an increment by which it may miss where the tangent pointed

@@ -23,6 +23,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pinjoint.components.arrays import Array, Rows
 from pinjoint.components.cases import settled
 from pinjoint.components.derived import on_axis
 from pinjoint.components.language import begun, tr
@@ -32,7 +33,7 @@ from pinjoint.components.particle import in_support_axes, spring_stiffness, supp
 from pinjoint.components.spans import Kinks
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.wording import brief
-from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised
+from pinjoint.systems.statics.equations import Structure, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External

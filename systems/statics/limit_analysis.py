@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.bent import Parts
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import joined, marked, plural, tr
@@ -22,7 +23,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import plastic_moments
 from pinjoint.components.spans import Curves, Kinks, extremes
 from pinjoint.components.theory import FIRST_ORDER
-from pinjoint.systems.statics.equations import Array, Structure, largest, normalised
+from pinjoint.systems.statics.equations import Structure, largest, normalised
 from pinjoint.systems.statics.explain import rod_names
 from pinjoint.systems.statics.external import External
 

@@ -7,24 +7,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.arrays import Array, Flags
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.model import Model
-from pinjoint.systems.statics.equations import (
-    SOFT,
-    Array,
-    Flags,
-    Structure,
-    largest,
-    normalised,
-    of_axes,
-    of_rods,
-)
+from pinjoint.systems.statics.equations import SOFT, Structure, largest, normalised
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, hinges_named, moved, rod_names, slack_named
 from pinjoint.systems.statics.factor import NO_STIFFNESS, is_stable, regular, softest, unresisted
 from pinjoint.systems.statics.follow import HALF, NARROWINGS, Path, Point, Tangent
 from pinjoint.systems.statics.relax import LARGEST_PLASTIC_ROTATION, RUNAWAY, STEPS, relax, torn
+from pinjoint.systems.statics.response import of_axes, of_rods
 
 BEYOND = 1e-6  # of the change of load, by which a jump begins beyond a loss of stability
 FIRST_LOAD = 1 / 64  # of the change of load, under which a first-order mechanism takes its shape

@@ -10,13 +10,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pinjoint.components.arrays import Array, Flags, Rows
 from pinjoint.components.derived import by_fixity, cubic, on_joints, own_slopes
 from pinjoint.components.model import Model
 from pinjoint.components.spans import Kinks
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import Bending
 from pinjoint.systems.statics.buckling import members
-from pinjoint.systems.statics.equations import Array, Flags, Response, Rows, Structure
+from pinjoint.systems.statics.equations import Structure
+from pinjoint.systems.statics.response import Response
 from pinjoint.systems.statics.state import Start, StaticState
 
 PARTS = 4  # of a member, at least

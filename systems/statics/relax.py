@@ -13,7 +13,8 @@ from functools import partial
 
 import numpy as np
 
-from pinjoint.systems.statics.equations import Array, Flags, Structure, largest
+from pinjoint.components.arrays import Array, Flags
+from pinjoint.systems.statics.equations import Structure, largest
 from pinjoint.systems.statics.factor import is_stable, regular, softest
 from pinjoint.systems.statics.follow import LARGEST_MOVE, NEWTON_ITERATIONS, SMALLEST_SHARE, Path, Point
 

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.arrays import Array
 from pinjoint.components.bent import farthest
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, nodes
 from pinjoint.components.wording import as_said, cut
-from pinjoint.systems.statics.equations import Array, largest
+from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.state import StaticState
 
 LEAST = 0.005  # of the largest value of a kind: a smaller difference is not worth a word

@@ -19,6 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.arrays import ROUND_OFF, Array
 from pinjoint.components.field import LARGEST, FieldError
 from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.mistake import WrongValue
@@ -29,7 +30,7 @@ from pinjoint.components.theory import EXACT
 from pinjoint.components.wording import brief, quoted
 from pinjoint.systems.statics.bending import needed_parts
 from pinjoint.systems.statics.contacts import Discs, Sinking
-from pinjoint.systems.statics.equations import ROUND_OFF, SOFT, Array, Structure, largest, normalised, of_axes
+from pinjoint.systems.statics.equations import SOFT, Structure, largest, normalised
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import (
     describe_motion,
@@ -43,6 +44,7 @@ from pinjoint.systems.statics.factor import SURELY_HELD, regular, soft_modes, so
 from pinjoint.systems.statics.follow import Path, Point
 from pinjoint.systems.statics.loading import Loading, first_order_mechanism
 from pinjoint.systems.statics.relax import BALANCED
+from pinjoint.systems.statics.response import of_axes
 from pinjoint.systems.statics.state import NEUTRAL, STABLE, UNSTABLE, Start, StaticState
 from pinjoint.systems.statics.theory import FirstOrder
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array, Flags, Rows
 from pinjoint.components.cases import settled
 from pinjoint.components.derived import amplitude, diagrams
 from pinjoint.components.language import marked
@@ -16,8 +17,9 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import of_rigid_supports
 from pinjoint.components.rod import bends, has_struts
 from pinjoint.components.wording import brief
-from pinjoint.systems.statics.equations import Array, Flags, Response, Rows, Structure, of_axes
+from pinjoint.systems.statics.equations import Structure
 from pinjoint.systems.statics.events import Event
+from pinjoint.systems.statics.response import Response, of_axes
 
 STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = (
     marked("equilibrium"),

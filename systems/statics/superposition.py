@@ -11,10 +11,11 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.cases import settled
 from pinjoint.components.model import Model
 from pinjoint.components.wording import brief
-from pinjoint.systems.statics.equations import Array, Structure, largest
+from pinjoint.systems.statics.equations import Structure, largest
 from pinjoint.systems.statics.theory import FirstOrder
 from pinjoint.systems.statics.unknowns import Unknown
 

@@ -8,23 +8,16 @@ from functools import cached_property
 
 import numpy as np
 
+from pinjoint.components.arrays import ROUND_OFF, Array
 from pinjoint.components.language import begun, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.theory import FIRST_ORDER
-from pinjoint.systems.statics.equations import (
-    ROUND_OFF,
-    SOFT,
-    Array,
-    Response,
-    Structure,
-    largest,
-    normalised,
-    of_axes,
-)
+from pinjoint.systems.statics.equations import SOFT, Structure, largest, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External, loose_bodies
 from pinjoint.systems.statics.factor import SURELY_HELD, pseudo_random, regular, soft_modes, unresisted
+from pinjoint.systems.statics.response import Response, of_axes
 from pinjoint.systems.statics.state import STABLE, Start, StaticState
 
 _REFINEMENTS = 4  # of a linear solution

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.linalg import qr
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
@@ -16,7 +17,7 @@ from pinjoint.components.particle import Particle, in_support_axes, spring_stiff
 from pinjoint.components.rod import Rod, bends, rigid_joints
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.wording import missing
-from pinjoint.systems.statics.equations import AXES, Array, Structure
+from pinjoint.systems.statics.equations import AXES, Structure
 
 _KEPT = 1e6  # weight of supports against rods when redundants are chosen: rods are released first
 _NEVER = 1e8  # of axial forces in rods that bend, which are not released

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.arrays import ROUND_OFF, Array, Flags
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import begun, joined, marked, tr
 from pinjoint.components.model import Model
@@ -16,9 +17,10 @@ from pinjoint.components.particle import supported
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.wording import missing
 from pinjoint.components.world import called
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, largest, of_axes
+from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import rod_names
+from pinjoint.systems.statics.response import of_axes
 from pinjoint.systems.statics.settle import Settlement, settle
 from pinjoint.systems.statics.state import Start, StaticState
 from pinjoint.systems.statics.theory import linear

@@ -10,13 +10,15 @@ from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from pinjoint.components import written
+from pinjoint.components.arrays import ROUND_OFF, Array
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.assembly import Matrix
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
+from pinjoint.systems.statics.equations import Structure, largest, normalised
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.factor import Factor, pseudo_random
 from pinjoint.systems.statics.masses import Divided
+from pinjoint.systems.statics.response import Response
 from pinjoint.systems.statics.settle import UNBALANCED
 from pinjoint.systems.statics.state import Start, StaticState
 from pinjoint.systems.statics.theory import FULL

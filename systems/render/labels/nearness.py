@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pinjoint.components.arrays import Rows
 from pinjoint.components.camera import Viewport
 from pinjoint.systems.broad_phase import distance_to_segments
-from pinjoint.systems.render.marks import Owner, Owners, Points, Rows, Truths, Values
+from pinjoint.systems.render.marks import Owner, Owners, Points, Truths, Values
 
 LINE, DIAGRAM, SYMBOL = range(3)  # kinds of parts
 NOBODY = -1  # code of what is not there

@@ -8,9 +8,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Rows
 from pinjoint.components.camera import Viewport
 from pinjoint.systems.render.labels.nearness import NOBODY, Codes, Parts, ranges, within
-from pinjoint.systems.render.marks import Mark, Owners, Panel, Points, Rows, Text, Truths, Values, owners
+from pinjoint.systems.render.marks import Mark, Owners, Panel, Points, Text, Truths, Values, owners
 from pinjoint.systems.render.typography import text_width
 
 FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover only in need

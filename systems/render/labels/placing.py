@@ -14,9 +14,10 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from pinjoint.components.arrays import Rows
 from pinjoint.systems.render.labels.nearness import NOBODY, Boxes, Codes, ranges, within
 from pinjoint.systems.render.labels.occupancy import FAINT, STRONG, Occupancy
-from pinjoint.systems.render.marks import Discs, Mark, Owner, Panel, Points, Rows, Strokes, Text, Truths, Values
+from pinjoint.systems.render.marks import Discs, Mark, Owner, Panel, Points, Strokes, Text, Truths, Values
 from pinjoint.systems.render.theme import Colour, faded
 from pinjoint.systems.render.typography import font_size, line_height, text_width
 

@@ -8,6 +8,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Rows
 from pinjoint.components.bent import borne_between
 from pinjoint.components.cases import case_told, factor_of_each, permanent
 from pinjoint.components.language import tr
@@ -17,7 +18,7 @@ from pinjoint.components.tags import DiagramShown
 from pinjoint.components.view import View
 from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels.occupancy import STRONG
-from pinjoint.systems.render.marks import Fills, Owner, Owners, Points, Rows, Strokes, Truths, Values
+from pinjoint.systems.render.marks import Fills, Owner, Owners, Points, Strokes, Truths, Values
 from pinjoint.systems.render.model.sheet import DIRECTIONS, Sheet
 from pinjoint.systems.render.model.supports import NO_SUPPORT, crowding
 from pinjoint.systems.render.model.values import (

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from pinjoint.components.arrays import Rows
 from pinjoint.components.view import Cut
 from pinjoint.systems.broad_phase import distance_to_segments
 from pinjoint.systems.render.labels.occupancy import STRONG
-from pinjoint.systems.render.marks import Points, Rows, Strokes
+from pinjoint.systems.render.marks import Points, Strokes
 from pinjoint.systems.render.model.arrows import draw_arrows
 from pinjoint.systems.render.model.members import draw_arcs
 from pinjoint.systems.render.model.sheet import Sheet

@@ -12,6 +12,7 @@ from typing import Literal
 
 import numpy as np
 
+from pinjoint.components.arrays import Rows
 from pinjoint.components.bent import AXIAL, FLAT, MOMENT, SHEAR, Axes, inner_forces
 from pinjoint.components.camera import Viewport
 from pinjoint.components.language import marked, tr
@@ -24,7 +25,7 @@ from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels.nearness import DIAGRAM, ranges
 from pinjoint.systems.render.labels.occupancy import FAINT
 from pinjoint.systems.render.labels.placing import ANCHORS
-from pinjoint.systems.render.marks import Bars, Discs, Fills, Points, Rows, Strokes, Truths, Values
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Points, Strokes, Truths, Values
 from pinjoint.systems.render.model.arrows import steady
 from pinjoint.systems.render.model.sheet import Sheet, typical_length
 from pinjoint.systems.render.model.values import (

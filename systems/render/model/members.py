@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.arrays import Rows
 from pinjoint.components.bent import Axes
 from pinjoint.components.cases import case_told, factor_of_each, permanent
 from pinjoint.components.rod import is_kinked, rigid_joints
@@ -13,18 +14,7 @@ from pinjoint.components.tags import DiagramShown
 from pinjoint.systems.render.labels.nearness import ranges
 from pinjoint.systems.render.labels.occupancy import STRONG
 from pinjoint.systems.render.labels.placing import ANCHORS
-from pinjoint.systems.render.marks import (
-    Discs,
-    Fills,
-    Owner,
-    Owners,
-    Points,
-    Rows,
-    Stamps,
-    Strokes,
-    Truths,
-    Values,
-)
+from pinjoint.systems.render.marks import Discs, Fills, Owner, Owners, Points, Stamps, Strokes, Truths, Values
 from pinjoint.systems.render.model.arrows import (
     FORCES,
     MOST,

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from pinjoint.components.arrays import Rows
 from pinjoint.components.bent import FLAT, Lines, curved_lines, drawn_scale, is_frame, largest_sag
 from pinjoint.components.camera import Viewport
 from pinjoint.components.form import Form
@@ -21,7 +22,7 @@ from pinjoint.components.view import Listing, View, drawn_positions
 from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels.occupancy import Occupancy
 from pinjoint.systems.render.labels.placing import Label, Placed
-from pinjoint.systems.render.marks import Mark, Points, Rows, Truths, Values
+from pinjoint.systems.render.marks import Mark, Points, Truths, Values
 from pinjoint.systems.render.theme import Colour, Theme, pale
 from pinjoint.systems.render.typography import font_size
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pinjoint.components.arrays import Rows
 from pinjoint.components.bent import FLAT, Axes, Parts, drawn_scale
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.round_numbers import round_up
@@ -18,7 +19,7 @@ from pinjoint.systems.render.framing import cut_discs
 from pinjoint.systems.render.labels.nearness import LINE
 from pinjoint.systems.render.labels.occupancy import FAINT, STRONG
 from pinjoint.systems.render.labels.placing import Label, half_size
-from pinjoint.systems.render.marks import Discs, Panel, Points, Rows, Strokes, Truths, Values
+from pinjoint.systems.render.marks import Discs, Panel, Points, Strokes, Truths, Values
 from pinjoint.systems.render.model.sheet import DIRECTIONS, FEW, MANY, Sheet
 from pinjoint.systems.render.model.values import BACKING, FIRST, by_arrows, half_sizes, reach, write
 from pinjoint.systems.render.symbols import RIM, dashed

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import written
+from pinjoint.components.arrays import Rows
 from pinjoint.components.model import Model
 from pinjoint.components.particle import is_sprung, turned, turned_supports
 from pinjoint.components.rod import rigid_joints
-from pinjoint.systems.render.marks import Points, Rows, Stamps, Truths, Values
+from pinjoint.systems.render.marks import Points, Stamps, Truths, Values
 from pinjoint.systems.render.model.sheet import DIRECTIONS, MANY, Sheet
 from pinjoint.systems.render.model.values import write_beside, write_spring
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH

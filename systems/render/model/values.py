@@ -8,8 +8,9 @@ from typing import Literal
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.arrays import Rows
 from pinjoint.systems.render.labels.placing import NO_LINE, Key, Label, half_size
-from pinjoint.systems.render.marks import Owner, Points, Rows, Values
+from pinjoint.systems.render.marks import Owner, Points, Values
 from pinjoint.systems.render.model.sheet import Sheet
 from pinjoint.systems.render.theme import Colour, faded
 

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
 from pinjoint.session import Session
-from pinjoint.systems.statics.equations import Array, Structure
+from pinjoint.systems.statics.equations import Structure
 from pinjoint.systems.statics.external import External
 from tests.reference import frames
 
