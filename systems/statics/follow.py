@@ -619,10 +619,11 @@ class Path:
         return min(max(float(share.min()), LEAST_SHARE), 1.0 - AT_LIMIT)
 
     def _reversed(self, tangent: Tangent, found: Point, following: Tangent, increment: float) -> bool:
-        """True if a rod stopped flowing well within the increment."""
+        """True if a rod stopped flowing well within the increment; of two in series one may rest at its strength."""
         if not self.exact_events or increment <= REVERSAL:
             return False
-        return bool((tangent.flowing & ~(found.response.flowing & following.flowing)).any())
+        bears = found.response.flowing | self.structure.at_limit(found.response)
+        return bool((tangent.flowing & ~(bears & following.flowing)).any())
 
     # --- loss of stability -----------------------------------------------------------------------------
 

@@ -14,6 +14,8 @@ from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.components.theory import FIRST_ORDER, THEORIES
 from pinjoint.documents import models
+from pinjoint.systems.edit.dividing import divide
+from pinjoint.systems.statics.follow import Path, Point, Tangent
 from pinjoint.systems.statics.path import Curve, Goal
 from pinjoint.systems.statics.second_order import SecondOrder
 from pinjoint.systems.statics.settle import settle
@@ -303,3 +305,25 @@ def test_second_order_is_told_by_its_size_and_place() -> None:
             assert told.place == "P4"
             assert told.share == pytest.approx(1.0 / (1.0 - share) - 1.0, rel=0.02)
             assert told.said == "second order: +16 % at P4"
+
+
+def test_a_member_divided_in_two_yields_as_a_whole_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both halves of the column are at their strength and one shortens: that took a million steps."""
+    session = Session.open("portal")
+    session.rods["AB"].hinged, session.rods["AB"].rest_length = (True, True), 4.0027583138111735
+    session.rods["CD"].compressive_strength = 60.0
+    tried: list[float] = []
+    attempt = Path.attempt
+
+    def counted(path: Path, point: Point, tangent: Tangent, increment: float) -> Any:
+        tried.append(increment)
+        return attempt(path, point, tangent, increment)
+
+    monkeypatch.setattr(Path, "attempt", counted)
+    whole = settle(session.model, theory=FIRST_ORDER).final
+    begun = len(tried)
+    divide(session.model, [session.rods["CD"]])
+    halves = settle(session.model, theory=FIRST_ORDER).final
+    assert halves.displacement[:4] == pytest.approx(whole.displacement, rel=1e-9, abs=1e-12)
+    assert halves.axial_force[[2, 3]] == pytest.approx(whole.axial_force[2], rel=1e-9) == -60.0
+    assert len(tried) - begun <= begun + 3
