@@ -15,11 +15,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.field import Field, FieldError, state
 from pinjoint.components.handle import Handle
 from pinjoint.components.snapshot import Snapshot, check_departure
 
-Floats = NDArray[np.float64]
 Pairs = NDArray[np.int64]
 _DIMENSIONS = {"motion": 2, "forces": 1, "pile": 1, "longest_step": 0}  # of attributes that are real numbers
 
@@ -67,10 +67,10 @@ class FreeFlightState(_Saved):
     """
 
     kind = "free flight"
-    motion: Floats
+    motion: Array
     contacts: Pairs
-    forces: Floats
-    pile: Floats
+    forces: Array
+    pile: Array
 
 
 class PersistentContacts(_Saved):
@@ -82,7 +82,7 @@ class PersistentContacts(_Saved):
 
     kind = "persistent contacts"
 
-    def __init__(self, pairs: NDArray[np.integer[Any]], forces: Floats, longest_step: float = math.inf) -> None:
+    def __init__(self, pairs: NDArray[np.integer[Any]], forces: Array, longest_step: float = math.inf) -> None:
         self.pairs: Pairs = pairs.astype(np.int64)
         self.forces = forces
         self.longest_step = float(longest_step)

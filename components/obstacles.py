@@ -10,14 +10,13 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Role
 from pinjoint.components.language import tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.table import Table
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -28,10 +27,10 @@ class Pieces:
     (m,). radius: m; restitution: of impacts with them, NaN for that of the settings; shape (m,) or one for all.
     """
 
-    ends: Floats
+    ends: Array
     owner: NDArray[np.intp]
-    radius: Floats | float = 0.0
-    restitution: Floats | float = np.nan
+    radius: Array | float = 0.0
+    restitution: Array | float = np.nan
 
     def check(self, table: Table[Any], source: str) -> None:
         """Raise ValueError, naming the `source` that made them, where they are none of elements of a table."""
@@ -70,10 +69,10 @@ class Obstacles:
     radius, restitution: shape (m,). names: of what a person calls them, one each.
     """
 
-    start: Floats
-    span: Floats
-    radius: Floats
-    restitution: Floats
+    start: Array
+    span: Array
+    radius: Array
+    restitution: Array
     names: list[str]
 
     def __len__(self) -> int:
@@ -117,7 +116,7 @@ def _found(model: Model) -> Obstacles:
     )
 
 
-def _joined(found: list[tuple[Table[Any], Pieces]], name: str) -> Floats:
+def _joined(found: list[tuple[Table[Any], Pieces]], name: str) -> Array:
     parts = [np.broadcast_to(getattr(pieces, name), len(pieces.ends)) for _, pieces in found]
     return np.concatenate([np.zeros(0), *parts])
 

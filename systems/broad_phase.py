@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.obstacles import NO_OBSTACLES, Floats, Obstacles
+from pinjoint.components.arrays import Array
+from pinjoint.components.obstacles import NO_OBSTACLES, Obstacles
 
 Rows = NDArray[np.int64]
 
@@ -13,7 +14,7 @@ ALL_PAIRS_DISCS = 64  # discs up to which it is faster to look at all pairs than
 SEARCH_MARGIN = 1.0 + 1e-9  # factor of the radius of a search, so that round-off loses no pair
 
 
-def nearest(line: Floats, span: Floats) -> Floats:
+def nearest(line: Array, span: Array) -> Array:
     """The vectors to the nearest points of straight pieces, shape (k, 2).
 
     line: vectors to the first ends, shape (k, 2). span: from the first end to the other; zero for discs.
@@ -26,9 +27,7 @@ def nearest(line: Floats, span: Floats) -> Floats:
     return np.where(((along > 0.0) & (along < squared))[:, None], side, end)
 
 
-def gaps(
-    place: Floats, radius: Floats, pairs: Rows, obstacles: Obstacles = NO_OBSTACLES
-) -> tuple[Floats, Floats]:
+def gaps(place: Array, radius: Array, pairs: Rows, obstacles: Obstacles = NO_OBSTACLES) -> tuple[Array, Array]:
     """Distances (m) between the rims of pairs, and unit vectors from the first of each to the nearest point of the second.
 
     place: centres, shape (n, 2), m. radius: shape (n,), m. The numbers of obstacles follow those of the discs.
@@ -41,7 +40,7 @@ def gaps(
     return distance - reach, line / np.where(distance > 0.0, distance, 1.0)[:, None]
 
 
-def distance_to_segments(points: Floats, start: Floats, end: Floats) -> Floats:
+def distance_to_segments(points: Array, start: Array, end: Array) -> Array:
     """How far points are from the segments from `start` to `end`, all (…, 2)."""
     x, y = (start[..., axis] - points[..., axis] for axis in (0, 1))
     along_x, along_y = (end[..., axis] - start[..., axis] for axis in (0, 1))
@@ -52,7 +51,7 @@ def distance_to_segments(points: Floats, start: Floats, end: Floats) -> Floats:
     return np.sqrt(x * x + y * y)  # np.hypot takes ten times as long for many
 
 
-def near_pairs(place: Floats, reach: Floats, obstacles: Obstacles = NO_OBSTACLES) -> Rows:
+def near_pairs(place: Array, reach: Array, obstacles: Obstacles = NO_OBSTACLES) -> Rows:
     """Pairs i < j whose centres are at most reach[i] + reach[j] apart, in ascending order, shape (k, 2).
 
     place: centres, shape (n, 2), m. reach: shape (n,), m. Discs are searched by size, so that a few large discs
@@ -69,7 +68,7 @@ def near_pairs(place: Floats, reach: Floats, obstacles: Obstacles = NO_OBSTACLES
     return np.column_stack(np.divmod(np.sort(keys), total))
 
 
-def _tree_pairs(place: Floats, reach: Floats) -> Rows:
+def _tree_pairs(place: Array, reach: Array) -> Rows:
     """Pairs that may be near each other, by trees, shape (2, k), the lower number first."""
     from scipy.spatial import cKDTree
 
@@ -88,7 +87,7 @@ def _tree_pairs(place: Floats, reach: Floats) -> Rows:
     return np.concatenate(found).T
 
 
-def _near_obstacles(place: Floats, reach: Floats, obstacles: Obstacles) -> Rows:
+def _near_obstacles(place: Array, reach: Array, obstacles: Obstacles) -> Rows:
     found = [np.zeros((0, 2), dtype=np.int64)]
     for k in range(len(obstacles)):
         span = np.broadcast_to(obstacles.span[k], place.shape)

@@ -14,7 +14,7 @@ from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.obstacles import Floats
+from pinjoint.components.arrays import Array
 
 Integers = NDArray[np.int64]
 Arrays = TypeVar("Arrays")
@@ -92,15 +92,15 @@ class Grid(NamedTuple):
     discs that searches find; times: of impacts with them, s.
     """
 
-    boxes: Annotated[Floats, "n", 4]
+    boxes: Annotated[Array, "n", 4]
     layer: Annotated[Integers, "n"]
     levels: Annotated[Integers, 64]
-    inverse: Annotated[Floats, 64]
+    inverse: Annotated[Array, 64]
     heads: Annotated[NDArray[np.int32], "buckets"]
     after: Annotated[NDArray[np.int32], "entries"]
     before: Annotated[NDArray[np.int32], "entries"]
     found: Annotated[Integers, "found"]
-    times: Annotated[Floats, "found"]
+    times: Annotated[Array, "found"]
 
     @classmethod
     def empty(cls, n: int, layers: int) -> Grid:
@@ -119,7 +119,7 @@ class Queue(NamedTuple):
     once either has changed again.
     """
 
-    times: Annotated[Floats, "size"]
+    times: Annotated[Array, "size"]
     impacts: Annotated[NDArray[np.int32], "size", 4]
 
 
@@ -133,7 +133,7 @@ class Constraints(NamedTuple):
 
     first_persistent: Integers
     persistent: Integers
-    forces: Floats
+    forces: Array
 
     def cleared(self, size: int, counts: Integers) -> Constraints:
         """These constraints without persistent contacts, with room for `size` entries."""
@@ -179,20 +179,20 @@ class Group(NamedTuple):
     members: Annotated[Integers, "n"]
     place: Annotated[Integers, "n"]
     links: Annotated[Integers, "contacts", 2]
-    contacts: Annotated[Floats, "contacts", len(Contact)]
-    mobility: Annotated[Floats, "n", 2]
-    motion: Annotated[Floats, "n", 2]
-    initial: Annotated[Floats, "n", 2]
-    start: Annotated[Floats, "n", 2]
-    other: Annotated[Floats, "n", 2]
-    before: Annotated[Floats, "n", 2]
-    bend: Annotated[Floats, "n", 2]
-    curve: Annotated[Floats, "n", 2]
-    noise: Annotated[Floats, 1]
+    contacts: Annotated[Array, "contacts", len(Contact)]
+    mobility: Annotated[Array, "n", 2]
+    motion: Annotated[Array, "n", 2]
+    initial: Annotated[Array, "n", 2]
+    start: Annotated[Array, "n", 2]
+    other: Annotated[Array, "n", 2]
+    before: Annotated[Array, "n", 2]
+    bend: Annotated[Array, "n", 2]
+    curve: Annotated[Array, "n", 2]
+    noise: Annotated[Array, 1]
     active: Annotated[Integers, "contacts"]
     state: Annotated[Integers, "contacts"]
     chosen: Annotated[Integers, "contacts"]
-    matrix: Annotated[Floats, DIRECT + 1, DIRECT]
+    matrix: Annotated[Array, DIRECT + 1, DIRECT]
     cut_short: Annotated[Integers, 1]
 
     @classmethod
@@ -239,31 +239,31 @@ class Pile(NamedTuple):
     first[i + 1]. queue: contacts still to be relaxed; queued: 1 for these.
     """
 
-    speed: Annotated[Floats, "coordinates"]
-    root: Annotated[Floats, "coordinates"]
-    previous: Annotated[Floats, "coordinates"]
-    direction: Annotated[Floats, "coordinates"]
-    shift: Annotated[Floats, "n"]
-    fastest: Annotated[Floats, "n"]
-    nearness: Annotated[Floats, "n"]
-    pull: Annotated[Floats, "n"]
-    law: Annotated[Floats, "n"]
+    speed: Annotated[Array, "coordinates"]
+    root: Annotated[Array, "coordinates"]
+    previous: Annotated[Array, "coordinates"]
+    direction: Annotated[Array, "coordinates"]
+    shift: Annotated[Array, "n"]
+    fastest: Annotated[Array, "n"]
+    nearness: Annotated[Array, "n"]
+    pull: Annotated[Array, "n"]
+    law: Annotated[Array, "n"]
     part: Annotated[NDArray[np.int32], "n"]
-    gain: Annotated[Floats, "n"]
-    energy: Annotated[Floats, "n"]
-    pushed_out: Annotated[Floats, "n"]
-    bounced: Annotated[Floats, "n"]
-    change: Annotated[Floats, "n"]
-    work: Annotated[Floats, "n"]
-    share: Annotated[Floats, "n"]
+    gain: Annotated[Array, "n"]
+    energy: Annotated[Array, "n"]
+    pushed_out: Annotated[Array, "n"]
+    bounced: Annotated[Array, "n"]
+    change: Annotated[Array, "n"]
+    work: Annotated[Array, "n"]
+    share: Annotated[Array, "n"]
     pairs: Annotated[Integers, "pairs", 2]
-    near: Annotated[Floats, "pairs", len(PilePair)]
-    forces: Annotated[Floats, "pairs"]
+    near: Annotated[Array, "pairs", len(PilePair)]
+    forces: Annotated[Array, "pairs"]
     chosen: Annotated[Integers, "pairs"]
     order: Annotated[Integers, "pairs"]
     ends: Annotated[NDArray[np.uint32], "pairs", 2]
-    contacts: Annotated[Floats, "pairs", len(PileContact)]
-    scale: Annotated[Floats, "pairs"]
+    contacts: Annotated[Array, "pairs", len(PileContact)]
+    scale: Annotated[Array, "pairs"]
     first: Annotated[NDArray[np.int32], "bounds"]
     contacts_of: Annotated[NDArray[np.int32], "ends"]
     queue: Annotated[NDArray[np.int32], "pairs"]

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.language import joined, plural
 from pinjoint.components.model import Model
-from pinjoint.components.obstacles import NO_OBSTACLES, Floats, Obstacles, obstacles
+from pinjoint.components.obstacles import NO_OBSTACLES, Obstacles, obstacles
 from pinjoint.components.rod import nodes
 from pinjoint.systems.broad_phase import SEARCH_MARGIN, Rows, gaps, near_pairs
 from pinjoint.systems.collision.free.discs import WORK_AT_ONCE
@@ -40,7 +41,7 @@ def _warm_up() -> None:
 PARTING = GeneratedModule("parting", _contents, _warm_up)  # of its own: compiled within a second
 
 
-def overlaps(place: Floats, radius: Floats, others: Obstacles = NO_OBSTACLES) -> Rows:
+def overlaps(place: Array, radius: Array, others: Obstacles = NO_OBSTACLES) -> Rows:
     """Pairs of discs, and of discs and obstacles, that overlap, shape (k, 2)."""
     pairs = near_pairs(place, radius, others)
     reach = np.concatenate([radius, others.radius])[pairs].sum(axis=1)
@@ -48,10 +49,10 @@ def overlaps(place: Floats, radius: Floats, others: Obstacles = NO_OBSTACLES) ->
 
 
 def part(
-    position: Floats,
-    displacement: Floats,
-    radius: Floats,
-    inverse_mass: Floats,
+    position: Array,
+    displacement: Array,
+    radius: Array,
+    inverse_mass: Array,
     among: Among,
     others: Obstacles = NO_OBSTACLES,
 ) -> Generator[None, None, int]:

@@ -7,10 +7,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.clock import PersistentContacts
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
-from pinjoint.components.obstacles import Floats, any_obstacles, obstacles
+from pinjoint.components.obstacles import any_obstacles, obstacles
 from pinjoint.systems.base import Integrator, StepSystem
 
 
@@ -51,7 +52,7 @@ def persistent_contacts(model: Model) -> PersistentContacts | None:
     return contacts if contacts.pairs.max() < model.particles.count + len(obstacles(model)) else None
 
 
-def fall_time(radius: Floats, pull: Floats) -> float:
+def fall_time(radius: Array, pull: Array) -> float:
     """Median time (s) in which discs of these radii (m) fall through their diameters under pulls (m/s²); ∞ without any."""
     radius, pull = radius[pull > 0.0], pull[pull > 0.0]
     with np.errstate(over="ignore"):  # what is hardly pulled falls for ever

@@ -8,8 +8,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.bent import deflected
 from pinjoint.components.derived import chord_rotation
 from pinjoint.components.field import SAVED
@@ -27,8 +27,6 @@ MOST_PARTS = 1000
 DIVISIONS = {2: marked("divide in two"), 4: marked("divide in four")}
 # Half a rod has half of the first and twice the others; sliders that move these move the first part only.
 _WITH_LENGTH, _AGAINST_LENGTH = ("prescribed_rest_length",), ("damping", "bending_damping")
-
-Numbers = NDArray[np.float64]
 
 
 def divide(model: Model, rods: Sequence[Rod], parts: int = 2) -> list[Rod]:
@@ -49,7 +47,7 @@ def several(model: Model, rods: Sequence[Rod]) -> str:
     return plural("{rod}", "{count} rods", len(rods), rod=model.describe(rods[0]))
 
 
-def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list[Rod]:
+def divide_at(model: Model, rod: Rod, places: Sequence[float] | Array) -> list[Rod]:
     """Divide a rod at places, as shares of its length from its start; returns its parts. Raises Refusal.
 
     The parts bend, weigh, bear and are damped as the rod did, which is the first of them now, and the state is that of
@@ -93,7 +91,7 @@ def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list
     return [rod, *made]
 
 
-def _columns(model: Model, rod: Rod, lengths: Numbers) -> dict[str, Any]:
+def _columns(model: Model, rod: Rod, lengths: Array) -> dict[str, Any]:
     """What the parts have, by Field."""
     row, table = rod.row, model.rods
     columns = {}
@@ -117,7 +115,7 @@ def _names(model: Model, rod: Rod, count: int) -> list[str]:
     return wanted
 
 
-def _particles(model: Model, rod: Rod, shares: Numbers) -> list[Particle]:
+def _particles(model: Model, rod: Rod, shares: Array) -> list[Particle]:
     """New particles on the rod as it is bent now: its cubic, and what a distributed force adds to it."""
     first, second = rod.ends
     rows = [first.row, second.row]
@@ -143,7 +141,7 @@ def _particles(model: Model, rod: Rod, shares: Numbers) -> list[Particle]:
     )
 
 
-def _let_parts_bear(model: Model, load: SpanLoad, parts: Sequence[Rod], cuts: Numbers) -> None:
+def _let_parts_bear(model: Model, load: SpanLoad, parts: Sequence[Rod], cuts: Array) -> None:
     """Give the parts of a rod, between cuts (m) from its start, what a load on it exerts there."""
     start, end = load.start, cuts[-1] if load.end is None else min(load.end, cuts[-1])
     first, last = np.array([load.start_intensity, load.end_intensity])

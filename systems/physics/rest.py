@@ -5,17 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pinjoint.components.arrays import Array, Rows
+from pinjoint.components.arrays import Array, Flags, Rows
 from pinjoint.components.model import Model
 from pinjoint.components.particle import is_sprung, spring_stiffness
 from pinjoint.components.rod import strut_energy
 from pinjoint.systems.physics.bending import bending_energy, bowing_work, levers
 from pinjoint.systems.physics.kernels import LOST_UNSEEN, REST_RESIDUAL, SMALL_SHARE
 from pinjoint.systems.program.entries import MEASURED, Measure
-
-Mask = NDArray[np.bool_]
 
 UNSEEN = 1e-6  # residual of a motion that is lost in rounding, of the largest force; larger: it is not at rest
 
@@ -66,7 +63,7 @@ class RestMeasure:
     @_BEYOND
     def at_rest(
         self, of_particle: Rows, of_rod: Rows, force_scale: Array | float, energy_scale: Array | float
-    ) -> Mask:
+    ) -> Flags:
         """Which islands are at rest.
 
         of_particle, of_rod: the island of each. force_scale (kN), energy_scale (J): of the clock, one for all islands
@@ -85,7 +82,7 @@ class RestMeasure:
         kinetic = np.bincount(of_particle, self.kinetic, count)
         return (residual <= still_force) & (kinetic <= still_energy)
 
-    def measures(self, model: Model, particles: Mask, rods: Mask) -> Array:
+    def measures(self, model: Model, particles: Flags, rods: Flags) -> Array:
         """The measures of these particles and rods at rest, shape (8,)."""
         work = model.particles.constant_force[particles] * model.particles.displacement[particles]
         turned = model.particles.constant_moment[particles] * model.particles.rotation[particles]

@@ -12,13 +12,13 @@ import sys
 
 import numpy as np
 
-from pinjoint.components.arrays import Array, Rows
+from pinjoint.components.arrays import Array, Flags, Rows
 from pinjoint.components.field import Role
 from pinjoint.components.load import load_ends
 from pinjoint.components.model import Model
 from pinjoint.systems.collision.system import persistent_contacts
 from pinjoint.systems.islands import IMMOVABLE, islands
-from pinjoint.systems.physics.rest import Mask, RestMeasure
+from pinjoint.systems.physics.rest import RestMeasure
 from pinjoint.systems.program.entries import ASLEEP
 from pinjoint.systems.program.program import Program
 from pinjoint.systems.program.reordered import ReorderedProgram
@@ -38,7 +38,7 @@ class Sleep:
         self._looked_at = -1  # the version of particles.asleep for which any_asleep was determined
         self._parts: dict[Program, ReorderedProgram] = {}
         self._bound: ReorderedProgram | None = None  # to the model as it is
-        self._left_out: Mask = np.zeros(0, dtype=bool)  # asleep when it was bound
+        self._left_out: Flags = np.zeros(0, dtype=bool)  # asleep when it was bound
 
     # --- who may sleep, and who does -------------------------------------------------------------------
 
@@ -111,7 +111,7 @@ class Sleep:
         varies = np.array(load_ends(self.model)) > self.model.clock.time
         return self._of_particle[self.model.loads.on[varies]]
 
-    def _let_sleep(self, asleep: Mask, kinetic: Array) -> bool:
+    def _let_sleep(self, asleep: Flags, kinetic: Array) -> bool:
         """Let these particles sleep, and no others. kinetic: their energy (J), which they lose."""
         falling = asleep & ~self.model.particles.asleep
         if falling.any():
@@ -119,14 +119,14 @@ class Sleep:
             self.model.writable("particles.velocity")[falling] = 0.0
         return self._write(asleep)
 
-    def _wake(self, particles: Mask | None = None) -> bool:
+    def _wake(self, particles: Flags | None = None) -> bool:
         """Wake the islands of these particles; none given: all."""
         still = np.zeros(self.model.particles.count, dtype=bool)
         if particles is not None:
             still = self.model.particles.asleep & ~np.isin(self._of_particle, self._of_particle[particles])
         return self._write(still)
 
-    def _write(self, asleep: Mask) -> bool:
+    def _write(self, asleep: Flags) -> bool:
         if np.array_equal(asleep, self.model.particles.asleep):
             return False
         self.model.writable("particles.asleep")[...] = asleep
@@ -149,7 +149,7 @@ class Sleep:
             self._left_out = asleep.copy()
         return part
 
-    def _part_without(self, asleep: Mask, program: Program) -> ReorderedProgram:
+    def _part_without(self, asleep: Flags, program: Program) -> ReorderedProgram:
         """The program of those that are awake, bound to the model as it is."""
         moving = ~asleep & (self._of_particle != IMMOVABLE)
         part = self._parts.get(program)

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.clock import PersistentContacts
 from pinjoint.components.field import Column, Role
 from pinjoint.components.model import Model
-from pinjoint.components.obstacles import Floats, obstacles
+from pinjoint.components.obstacles import obstacles
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import nodes
 from pinjoint.systems.broad_phase import gaps
@@ -175,12 +176,12 @@ class NeighbourList:
     # --- how near ------------------------------------------------------------------------------------
 
     @property
-    def displacement(self) -> Floats:
+    def displacement(self) -> Array:
         """Of the particles, now (m); not a read-only view, for which kernels are not compiled."""
         return self.model.tables["particles"].storage("displacement")
 
     @property
-    def velocity(self) -> Floats:
+    def velocity(self) -> Array:
         """Of the particles, now (m/s)."""
         return self.model.tables["particles"].storage("velocity")
 

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.clock import FreeFlightState
-from pinjoint.components.obstacles import NO_OBSTACLES, Floats, Obstacles
+from pinjoint.components.obstacles import NO_OBSTACLES, Obstacles
 from pinjoint.systems.broad_phase import nearest
 from pinjoint.systems.collision.columns import (
     FLIGHT,
@@ -115,13 +116,13 @@ class Discs:
         added[:, Disc.RADIUS], added[:, Disc.BOUNCE] = others.radius, others.restitution
         added[:, Disc.SHARED] = _shared_ends(others)
 
-    def _columns(self, first: int) -> Floats:
+    def _columns(self, first: int) -> Array:
         """The x and y columns of the discs that begin with one."""
         return self.rows[: self.count, first : first + 2]
 
     # --- time -------------------------------------------------------------------------------------
 
-    def advance(self, until: float, most_events: int = 2**62) -> tuple[Reason, Floats]:
+    def advance(self, until: float, most_events: int = 2**62) -> tuple[Reason, Array]:
         """Let everything happen up to a time (s), at most `most_events` events, and not for longer than Choice allows.
 
         Returns DONE or BUSY, and the impacts in the order in which they happened, with the columns of Detail.
@@ -209,7 +210,7 @@ class Discs:
         self.counts[[Count.STEPPING, Count.WORK, Count.RENEW]] = 0, 0, 1
         self.numbers[Number.WORK_SINCE] = self.now
 
-    def _take(self) -> Floats:
+    def _take(self) -> Array:
         """The impacts reported since the last call."""
         k = int(self.counts[Count.REPORTED])
         self.counts[Count.REPORTED] = 0
@@ -231,7 +232,7 @@ class Discs:
         self.counts[Count.RENEW], self.counts[Count.LISTED] = 1, NONE
         self._enter_persistent(state.contacts, state.forces)
 
-    def _enter_persistent(self, pairs: Integers, forces: Floats) -> None:
+    def _enter_persistent(self, pairs: Integers, forces: Array) -> None:
         """Enter persistent contacts of the first disc of each pair with the second."""
         while len(pairs) > self.counts[Count.SPARES]:
             self.constraints = self.constraints.enlarged(2 * len(self.constraints.persistent), self.counts)
@@ -243,7 +244,7 @@ class Discs:
             self.constraints.forces[entry] = force
             self.constraints.first_persistent[i] = entry
 
-    def _persistent_contacts(self) -> tuple[Integers, Floats]:
+    def _persistent_contacts(self) -> tuple[Integers, Array]:
         """Pairs of a disc and what it touches, and the forces between them (N), in the order of the chains."""
         pairs, entries = [], []
         for i in np.flatnonzero(self.constraints.first_persistent != NONE).tolist():
@@ -254,7 +255,7 @@ class Discs:
                 pairs.append((i, other))
         return np.array(pairs, dtype=np.int64).reshape(-1, 2), self.constraints.forces[entries]
 
-    def contact_forces(self) -> Floats:
+    def contact_forces(self) -> Array:
         """The sum of the forces (N) on each disc in its persistent contacts, shape (n, 2)."""
         pairs, forces = self._persistent_contacts()
         owners, others = pairs.T
@@ -314,12 +315,12 @@ class Discs:
         """Energy (J) that steps of piles have given back of all that was lost, to discs that jam."""
         return max(float(self.numbers[Number.MOST_LOSS] - self.numbers[Number.LOSS]), 0.0)
 
-    def state_at(self, time: float) -> tuple[Floats, Floats]:
+    def state_at(self, time: float) -> tuple[Array, Array]:
         """Displacements (m) and velocities (m/s) at a time (s) between the last event and the next."""
         return state_on(self.rows[: self.count], time)
 
 
-def state_on(paths: Floats, time: float) -> tuple[Floats, Floats]:
+def state_on(paths: Array, time: float) -> tuple[Array, Array]:
     """Displacements (m) and velocities (m/s) at a time (s) on paths that begin with the columns FLIGHT of Disc."""
     s = (time - paths[:, Disc.EPOCH])[:, None]
     u, v, a = (paths[:, first : first + 2] for first in (Disc.UX, Disc.VX, Disc.AX))
@@ -334,7 +335,7 @@ def state_on(paths: Floats, time: float) -> tuple[Floats, Floats]:
     return place, velocity
 
 
-def _shared_ends(others: Obstacles) -> Floats:
+def _shared_ends(others: Obstacles) -> Array:
     """Column SHARED of obstacles: their ends that are also ends of an earlier obstacle with the same radius."""
     ends = np.concatenate([others.start, others.start + others.span])
     scale = np.abs(ends).max(initial=0.0) or 1.0

@@ -11,12 +11,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.arrays import Array
 from pinjoint.components.clock import FreeFlightState
 from pinjoint.components.field import Role
 from pinjoint.components.handle import Handle
 from pinjoint.components.load import loads_end
 from pinjoint.components.model import Model
-from pinjoint.components.obstacles import Floats, obstacles
+from pinjoint.components.obstacles import obstacles
 from pinjoint.systems.base import REVIEW_INTERVAL, Event, Law, StopReason
 from pinjoint.systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Number, Reason
 from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, Discs, state_on
@@ -81,7 +82,7 @@ class Flight:
     def discs(self) -> Discs:
         """The flying discs, in the present state of the model."""
         if not self._fresh:
-            self._found: deque[Floats] = deque()  # by a step that is not finished
+            self._found: deque[Array] = deque()  # by a step that is not finished
             self._happened = 0
             particles, clock = self.model.particles, self.model.clock
             self.flying = Discs(

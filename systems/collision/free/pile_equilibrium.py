@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import splu
 
-from pinjoint.components.obstacles import Floats, Obstacles
+from pinjoint.components.arrays import Array
+from pinjoint.components.obstacles import Obstacles
 from pinjoint.systems.broad_phase import Rows, gaps, near_pairs
 
 AROUND = 0.1  # of its radius around each disc, in which its neighbours are listed, and iterates are sought
@@ -46,13 +47,13 @@ class EquilibriumSearch:
 
     def __init__(
         self,
-        place: Floats,
-        radius: Floats,
-        inverse_mass: Floats,
-        pull: Floats,
+        place: Array,
+        radius: Array,
+        inverse_mass: Array,
+        pull: Array,
         obstacles: Obstacles,
         pushing: Rows,
-        forces: Floats,
+        forces: Array,
     ) -> None:
         self._start, self._place, self._radius = place, place.copy(), radius
         self._obstacles = obstacles
@@ -66,7 +67,7 @@ class EquilibriumSearch:
         self._free = (inverse_mass > 0.0) & self._moves[:count, None]
         self._unknown = np.full((len(self._moves), 2), -1)
         self._unknown[:count][self._free] = np.arange(self._free.sum())
-        self._force: Floats = (pull / np.where(self._free, inverse_mass, 1.0))[self._free]
+        self._force: Array = (pull / np.where(self._free, inverse_mass, 1.0))[self._free]
         mass = 1.0 / np.where(self._free.any(axis=1), inverse_mass.max(axis=1), 1.0)
         everywhere = np.full(len(obstacles), np.inf)
         self._weight = np.append(mass * float(np.hypot(*pull.T).max(initial=0.0)), everywhere)
@@ -77,7 +78,7 @@ class EquilibriumSearch:
         self._inertia = np.broadcast_to(inertia, place.shape)[self._free]
         self._list(pushing, forces)
 
-    def solve(self) -> tuple[Rows, Floats, Rows, Floats] | None:
+    def solve(self) -> tuple[Rows, Array, Rows, Array] | None:
         """The equilibrium, if it is near and no disc in it rests on a flying one; else None.
 
         The discs that lie in the pile, shape (k,); displacements of all discs to the equilibrium, shape (n, 2), m; the
@@ -113,11 +114,11 @@ class EquilibriumSearch:
             barrier = max((QUICK if min(forward, stronger) > LONG_STEP else SLOW) * present, 0.1 * CLOSED)
         return False
 
-    def _farthest(self, motion: Floats) -> float:
+    def _farthest(self, motion: Array) -> float:
         """The longest of displacements, in radii of its disc."""
         return float((np.abs(motion).max(axis=1) / self._radius).max())
 
-    def _list(self, pushing: Rows, forces: Floats) -> None:
+    def _list(self, pushing: Rows, forces: Array) -> None:
         """List the pairs that may touch, and iterates of their gaps (slack, m) and forces (N), and the scale of λ s (J).
 
         Forces of pairs that push are known; λ s = μ where gaps are small.
@@ -135,7 +136,7 @@ class EquilibriumSearch:
         self._pairs, self._slack, self._scale = pairs, slack, scale
         self._forces = np.where(known > 0.0, force, FIRST_BARRIER * scale / slack)
 
-    def _newton(self, barrier: float) -> tuple[Floats, Floats, Floats, float]:
+    def _newton(self, barrier: float) -> tuple[Array, Array, Array, float]:
         """Newton's step: of places, gaps and forces; and the residual force before it, as a share of the largest weight."""
         gap, normal = gaps(self._place, self._radius, self._pairs, self._obstacles)
         slack, force = self._slack, self._forces
@@ -155,7 +156,7 @@ class EquilibriumSearch:
         left = float(np.abs(unbalanced).max() / self._weight[self._moves].max())
         return motion, opening, wanted - force - stiffness * opening, left
 
-    def _derivative(self, pairs: Rows, normal: Floats) -> csr_matrix:
+    def _derivative(self, pairs: Rows, normal: Array) -> csr_matrix:
         """N: the derivative of the gaps by the unknown displacements."""
         unknown = self._unknown[pairs]
         known = unknown >= 0
@@ -165,7 +166,7 @@ class EquilibriumSearch:
         return csr_matrix((values[known], (rows[known], unknown[known])), shape=shape)
 
 
-def _share(value: Floats, change: Floats) -> float:
+def _share(value: Array, change: Array) -> float:
     """The largest share of a change, at most 1, that leaves all values positive."""
     shrinking = change < 0.0
     return min(1.0, TO_EDGE * float((-value[shrinking] / change[shrinking]).min(initial=np.inf)))
