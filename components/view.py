@@ -34,7 +34,6 @@ COLUMN = 310.0  # points: the width of panels, boxes to type into, or a lesson, 
 LEAST_MODEL = 230.0  # points that the model keeps beside boxes, or they take all
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
 TABLE_SHARE = 0.36  # of a window's height, that a table of results takes below a model at most
-LEAST_FOR_LESSON = 860.0  # points of a window's width from which on a lesson is a column, else a strip below
 STRIP, STRIP_SHARE = 230.0, 0.4  # points, and share of the height at most, of this strip
 
 
@@ -51,7 +50,7 @@ def magnified(height: float, display: float, chosen: float) -> float:
 
 def lesson_share(width: int, height: int, unit: float) -> tuple[int, int]:
     """The pixels that a lesson takes of a window: of its width, at the right, or of its height, at the bottom."""
-    if width >= LEAST_FOR_LESSON * unit:
+    if width >= 860.0 * unit:  # a column; else a strip below
         return round(COLUMN * unit), 0
     return 0, round(min(STRIP_SHARE * height, STRIP * unit))
 

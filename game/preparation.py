@@ -41,7 +41,6 @@ from pinjoint.systems.program.writer import kind_of
 from pinjoint.systems.render.backends.raster import RASTER, Raster, load_raster
 from pinjoint.systems.run.simulation import Simulation
 
-LONGEST_IMPACT = 2**20  # operations, about a second: a window waits half a minute to compile what takes longer
 BEGINNING = 1.5  # s in which the other process gets ready to compile
 BY_AN_EDIT: Sequence[
     tuple[Set[str], str]
@@ -179,7 +178,7 @@ class Preparation(System, Readiness):
         if (
             self._asked is not Compile.ALWAYS
             and is_live(simulation.model)
-            and impacts <= LONGEST_IMPACT
+            and impacts <= 2**20  # operations, about a second: others are worth half a minute's wait to compile
             and all(map(is_our_own, simulation.plan))
         ):
             jobs: list[Job] = [(PARTING.name,)] if parting > LONGEST_WORK else []

@@ -19,7 +19,6 @@ from pinjoint.systems.physics.pace import expected_response, loaded_mode
 
 DRAWN = 0.08  # of the structure's size: the largest displacement as drawn, at most, when a factor is chosen
 KEPT = (0.02, 0.25)  # of the size, drawn, within which a factor stays as it is
-FROM = 5.0  # the smallest factor; what would need less is seen without one
 TRUE = 1.0  # the factor of motions that are seen without one
 LEAST = 1e-7  # of the size: smaller displacements are rounding
 
@@ -66,7 +65,7 @@ class Exaggeration:
         if KEPT[0] <= present * largest / size <= KEPT[1]:
             return present
         most = DRAWN * size / largest
-        return round_down(most) if most >= FROM else TRUE
+        return round_down(most) if most >= 5.0 else TRUE  # what would need less is seen without one
 
 
 def _largest_expected(model: Model) -> float:

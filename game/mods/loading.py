@@ -187,7 +187,6 @@ def _forget(mod: Mod) -> None:
 # --- what a mod shares with the program ---------------------------------------------------------------------
 
 
-_STREAMS = ("stdin", "stdout", "stderr")
 _LIBRARIES = (math, np)  # by which everything computes
 
 
@@ -196,7 +195,7 @@ class Surroundings:
 
     def __init__(self) -> None:
         self._modules, self._threads = dict(sys.modules), set(threading.enumerate())
-        self._streams = {name: getattr(sys, name) for name in _STREAMS}
+        self._streams = {name: getattr(sys, name) for name in ("stdin", "stdout", "stderr")}
         self._functions = [(library, dict(vars(library))) for library in _LIBRARIES]
 
     def check(self) -> None:

@@ -19,7 +19,6 @@ from pinjoint.documents.models import replace
 from pinjoint.sweeps.plan import RECORDED, Plan
 from pinjoint.sweeps.variation import INSTALL, SweepError
 
-_MOST_PANELS = 12
 MOST_LINES = 12
 
 
@@ -119,7 +118,7 @@ class Results:
         matplotlib.use("Agg")
         from matplotlib import pyplot
 
-        measures = self.plan.measures[:_MOST_PANELS]
+        measures = self.plan.measures[:12]  # more panels would be too small
         drawn = any(variation.distribution for variation in self.plan.variations)
         figure, axes = pyplot.subplots(
             len(measures),

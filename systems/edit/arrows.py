@@ -22,11 +22,6 @@ Loaded = Particle | Rod | Load | SpanLoad
 
 COMFORTABLE = 100.0  # points, length of an arrow of usual size
 LONGEST = 400.0  # points, of the largest arrow before another scale is taken
-USUAL_STRAIN = 1e-3  # of a loaded structure, where no force is known yet
-USUAL_SLOPE = 0.1  # force × length² / bending stiffness of members, likewise
-LEVER = 0.25  # of a moment, as a share of the extent
-USUAL_ACCELERATION = 10.0  # m/s², of a loaded free body
-USUAL_SPEED = 5.0  # m/s
 ARC = 24.0  # points around what bears a moment, within which its arrow is
 # By the same scale.
 _DISTRIBUTED = {"start_intensity": "distributed_force", "end_intensity": "distributed_force"}
@@ -45,18 +40,18 @@ def usual(model: Model, field: str) -> float:
     if largest > 0.0:
         return largest
     if field == "velocity":
-        return USUAL_SPEED
+        return 5.0  # m/s
     if field == "moment":
-        return LEVER * usual(model, "force") * extent(model)
+        return 0.25 * usual(model, "force") * extent(model)
     rods = model.rods
     span = float(rods.original_length.max(initial=0.0)) or 1.0
     if field == "distributed_force":
         return usual(model, "force") / span
     if rods.count and (bending := rods.bending_stiffness.max()) > 0.0:
-        return float(USUAL_SLOPE * bending / span**2)
+        return float(0.1 * bending / span**2)  # a usual slope
     if rods.count:
-        return float(USUAL_STRAIN * rods.stiffness.max())
-    return float(USUAL_ACCELERATION * model.particles.mass.max(initial=1.0) / 1000.0)
+        return float(1e-3 * rods.stiffness.max())  # a usual strain
+    return float(10.0 * model.particles.mass.max(initial=1.0) / 1000.0)  # 10 m/s² of a free body
 
 
 def extent(model: Model) -> float:

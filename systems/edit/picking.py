@@ -21,7 +21,6 @@ PARTICLE_REACH = 8.0  # points from the centre, at least its radius
 ROD_REACH = 10.0  # points
 END_REACH, END_SHARE = 48.0, 0.4  # points, and share of a rod: what belongs to an end of it
 RING = 16.0  # points from a joint, where hinges of one rod are
-GRID_REACH = 5.0  # points
 
 
 @dataclass(frozen=True)
@@ -125,7 +124,7 @@ def pick_point(model: Model, view: View, pixel: Vector, besides: Handle | None =
 
 def pick_grid(model: Model, view: View, pixel: Vector) -> Grid | None:
     """The shown grid, if one of its lines is within reach of a pixel."""
-    reach = GRID_REACH * view.pixel_ratio
+    reach = 5.0 * view.pixel_ratio
     if view.strip.contains(pixel):
         return None
     for row in np.flatnonzero(model.grids.shown).tolist():

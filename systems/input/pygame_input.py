@@ -13,7 +13,6 @@ from pinjoint.systems.base import Phase, System
 from pinjoint.systems.input.actions import ACTIONS, FILES, MENU, TABLE, TEXT
 
 CLICK_REACH = 4.0  # points that the pointer may move while a button is down; more: a drag
-DOUBLE_CLICK = 0.4  # s between two clicks that count as a double click
 IDLE_PAUSE = 0.016  # s between polls for events while nothing moves
 IDLE_LOOKS = 16  # polls before a frame passes without events
 WAITING_LOOKS = 4  # polls while something is compiled, which frames would slow down
@@ -168,7 +167,7 @@ class PygameInput(System):
         now, before = time.monotonic(), self._clicked
         self._clicked = (now, pointer) if key == "click" else None
         reach = 2.0 * CLICK_REACH * frame.session.view.pixel_ratio
-        soon = key == "click" and before is not None and now - before[0] <= DOUBLE_CLICK
+        soon = key == "click" and before is not None and now - before[0] <= 0.4  # s
         if soon and before is not None and math.dist(pointer, before[1]) <= reach:
             key, self._clicked = "double click", None
         frame.pressed.append((key, pointer))

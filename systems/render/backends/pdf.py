@@ -16,7 +16,6 @@ from pinjoint.systems.render.typography import capital_height
 
 POINTS = 0.75  # of a page for each pixel, as browsers print
 # With quadratic outlines, as libraries embed them; what pygame draws has cubic ones.
-_FONTS = {"regular": "Inter-Regular.ttf", "semibold": "Inter-SemiBold.ttf"}
 
 
 def as_pdf(pictures: Sequence[Picture], size: tuple[int, int], title: str) -> bytes:
@@ -60,7 +59,7 @@ def embed_fonts() -> None:
     from reportlab.pdfbase.pdfmetrics import registerFont
     from reportlab.pdfbase.ttfonts import TTFont
 
-    for weight, name in _FONTS.items():
+    for weight, name in {"regular": "Inter-Regular.ttf", "semibold": "Inter-SemiBold.ttf"}.items():
         registerFont(
             TTFont(f"Inter {weight}", io.BytesIO((files("pinjoint.assets") / "fonts" / name).read_bytes()))
         )

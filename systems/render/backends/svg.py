@@ -22,7 +22,6 @@ from pinjoint.systems.render.marks import Panel, Picture, Text
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import WEIGHTS, capital_height
 
-FONTS = "Inter, sans-serif"
 _WEIGHTS = {"regular": "400", "semibold": "600"}
 _ANCHORS = {"left": "start", "centre": "middle", "right": "end"}
 _NOT_IN_IDS = re.compile(r"[\s%]|" + UNPRINTABLE.pattern)
@@ -41,7 +40,7 @@ def as_svg(pictures: Sequence[tuple[Picture, Name]], size: tuple[int, int], titl
             "width": width,
             "height": height,
             "viewBox": f"0 0 {width} {height}",
-            "font-family": FONTS,
+            "font-family": "Inter, sans-serif",
         },
     )
     ET.SubElement(root, "title").text = UNPRINTABLE.sub("�", title)
