@@ -159,9 +159,9 @@ def total(terms: Iterable[float]) -> str:
     return decimals(" ".join([f"{'−' * (shown[0] < 0.0)}{first}", *signed, sign, result]))
 
 
-def strain(value: float, *, nothing: float = 0.0) -> str:
+def strain(value: float) -> str:
     """Elongation per length."""
-    return _with_unit(number(1000.0 * value, nothing=1000.0 * nothing), "‰")
+    return _with_unit(number(1000.0 * value), "‰")
 
 
 def share(value: float, digits: int = 3) -> str:

@@ -605,7 +605,10 @@ def _fill(field: Field[Any], element: Any) -> None:
 
 
 def _draw(session: Session, size: tuple[int, int, float]) -> None:
-    from pinjoint.systems.render.pygame_render import draw_unseen  # imports pygame
+    """Draw a session as in a window of that size, to find what cannot be drawn."""
+    import pygame  # which takes a while
+
+    from pinjoint.systems.render.pygame_render import PygameRender
 
     session.update_view()
-    draw_unseen(Frame(session, FRAME), size[:2])
+    PygameRender(pygame.Surface(size[:2], depth=32)).process(Frame(session, FRAME))

@@ -149,13 +149,10 @@ class Results:
         others += [name for name, values in asked.items() if values is not None and len(values) > 1]
         lines: dict[str, list[int]] = {}
         for row in np.flatnonzero(self.found).tolist():
-            label = ", ".join(f"{name} {_short(self.columns[name][row])}" for name in others)
+            values = [(name, self.columns[name][row]) for name in others]
+            label = ", ".join(f"{k} {v:.6g}" if isinstance(v, float) else f"{k} {v}" for k, v in values)
             lines.setdefault(label, []).append(row)
         return {label: np.array(rows) for label, rows in lines.items()}
-
-
-def _short(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def check_output(path: Path, suffixes: Sequence[str] = (".csv", ".parquet")) -> None:

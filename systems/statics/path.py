@@ -18,9 +18,10 @@ from pinjoint.components.arrays import Array
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
+from pinjoint.components.particle import AXES
 from pinjoint.components.theory import EXACT
 from pinjoint.components.wording import brief, cut, missing
-from pinjoint.systems.statics.equations import AXES, SOFT, Structure, normalised, upright
+from pinjoint.systems.statics.equations import SOFT, Structure, normalised, upright
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External

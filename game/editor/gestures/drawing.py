@@ -650,10 +650,7 @@ class DrawSupport(Drawing):
         if along is None:
             return None
         points = math.hypot(*along) * context.view.camera.scale / context.view.pixel_ratio
-        return (
-            *support_towards(along),
-            self._turns and points > 60.0,
-        )  # far away, the ground holds rotation, too
+        return (*support_towards(along), self._turns and points > 60.0)  # far away also the rotation
 
     def _along(self, context: Context, pixel: Vector) -> Vector | None:
         """The vector from the particle to a pixel (m); None if the pixel lies on the particle."""

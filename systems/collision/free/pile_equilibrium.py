@@ -21,6 +21,7 @@ from scipy.sparse.linalg import splu
 from pinjoint.components.arrays import Array
 from pinjoint.components.obstacles import Obstacles
 from pinjoint.systems.broad_phase import Rows, gaps, near_pairs
+from pinjoint.systems.statics.assembly import SYMMETRIC
 
 AROUND = 0.1  # of its radius around each disc, in which its neighbours are listed, and iterates are sought
 FARTHEST = 0.025  # of its radius: an equilibrium to which a disc would go farther is not near
@@ -33,7 +34,6 @@ CLOSED = 1e-13  # μ at the end
 EARLY_ITERATIONS = 10  # after which discs move less than LITTLE radii, or no equilibrium is near
 LITTLE = 1e-2
 MOST_NEWTON_ITERATIONS = 60  # 10 to 30 are usual
-SYMMETRIC = {"SymmetricMode": True}
 
 
 class EquilibriumSearch:

@@ -279,15 +279,12 @@ def _box_lines(form: Form, width: float, u: float) -> Iterator[_Line]:
     for section, those in groupby(form.boxes, lambda box: box.section):
         own = section == form.heading
         title = PROPERTIES if own and len(form.readings) else "" if own else section
-        for (_, columns), some in groupby(those, lambda box: (box.vector, _across(box, half, u))):
+        for (_, columns), some in groupby(
+            those, lambda box: (box.vector, box.across or 1 + is_short(box, half, u))
+        ):
             for row in in_rows(list(some), columns):
                 yield _Line(title, row, columns)
                 title = ""
-
-
-def _across(box: Box, half: float, u: float) -> int:
-    """How many boxes share the row of one."""
-    return box.across or 1 + is_short(box, half, u)
 
 
 def _tile_lines(form: Form, width: float) -> Iterator[_Line]:
