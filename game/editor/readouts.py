@@ -36,7 +36,7 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
 
 BESIDE = marked("Theory beside the run")  # the title of a panel
 MOST_ELEMENTS = 3  # selected elements with a readout of their own
-MOST_JOINTS = 6  # whose sums are shown while none is selected
+_MOST_JOINTS = 6  # whose sums are shown while none is selected
 MOST_EVENTS = 10  # of a run, that are listed
 UNSEEN = 1e-7  # of the largest force on a body: left out of sums
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
@@ -158,10 +158,10 @@ def _equilibrium(context: Context) -> Iterator[Readout]:
     if not chosen:
         shown = [
             (f"{particle.said} {title}" if title else "", total)
-            for particle in list(model.particles)[:MOST_JOINTS]
+            for particle in list(model.particles)[:_MOST_JOINTS]
             for title, total in _sums(on_joint(model, particle.row))
         ]
-        more = model.particles.count - MOST_JOINTS
+        more = model.particles.count - _MOST_JOINTS
         rest = (
             [(plural("and one more", "and {count} more", more), tr("select one to see it"))] if more > 0 else []
         )

@@ -22,7 +22,7 @@ Loaded = Particle | Rod | Load | SpanLoad
 
 COMFORTABLE = 100.0  # points, length of an arrow of usual size
 LONGEST = 400.0  # points, of the largest arrow before another scale is taken
-ARC = 24.0  # points around what bears a moment, within which its arrow is
+_ARC = 24.0  # points around what bears a moment, within which its arrow is
 # By the same scale.
 _DISTRIBUTED = {"start_intensity": "distributed_force", "end_intensity": "distributed_force"}
 WHOLE = 0.3  # share of a distributed load at either end, by which its intensity there is dragged; between, both
@@ -111,7 +111,7 @@ def dragged(model: Model, view: View, element: Loaded, pixel: Vector) -> list[Fi
         return [Rod.distributed_force] if any(element.distributed_force) else []
     on = element.particle if isinstance(element, Load) else element
     rim = on.radius * view.camera.scale / view.pixel_ratio
-    if element.moment and _away(view, drawn_at(model, on), pixel) <= rim + ARC:
+    if element.moment and _away(view, drawn_at(model, on), pixel) <= rim + _ARC:
         return [kind.moment]
     return [kind.force] if any(element.force) else []
 
@@ -126,9 +126,9 @@ def _dragged_between(model: Model, view: View, load: SpanLoad, pixel: Vector) ->
         return [SpanLoad.start]
     if spread and from_end <= PARTICLE_REACH:
         return [SpanLoad.end]
-    if load.moment and from_start <= ARC:
+    if load.moment and from_start <= _ARC:
         return [SpanLoad.moment]
-    if any(load.force) and (from_start <= ARC or not spread):
+    if any(load.force) and (from_start <= _ARC or not spread):
         return [SpanLoad.force]
     share = (share_at(rod, view.camera.to_model(pixel)) * length - start) / max(end - start, 1e-300)
     of_start, of_end = [SpanLoad.start_intensity], [SpanLoad.end_intensity]

@@ -23,7 +23,7 @@ from pinjoint.components.rod import Rod, rigid_joints
 from pinjoint.components.settings import Environment, Settings
 from pinjoint.systems.forms.typing import YES_NO, Typing
 
-MIXED = marked("mixed")
+_MIXED = marked("mixed")
 KIND = "kind"  # the part of a history that is its kind
 CASE = "case"  # the part of an own load that makes it one of a case
 NAMED = "name"  # the part of a combination that is its name
@@ -281,7 +281,7 @@ def _content(model: Model, subject: Subject, field: Field[Any], axis: str) -> tu
         text, note = _content(model, subject, table.fields[field.overrides], axis)
         return text, joined([note, tr(field.absent)], ", ")
     if not (values == values[0]).all():
-        return "", tr(MIXED)
+        return "", tr(_MIXED)
     if values[0] is None:
         return field.absent, ""
     return _written(field, values[0]), ""

@@ -14,7 +14,7 @@ from pinjoint.systems.render.marks import Panel, Picture, Text
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import capital_height
 
-POINTS = 0.75  # of a page for each pixel, as browsers print
+_POINTS = 0.75  # of a page for each pixel, as browsers print
 # With quadratic outlines, as libraries embed them; what pygame draws has cubic ones.
 
 
@@ -25,11 +25,11 @@ def as_pdf(pictures: Sequence[Picture], size: tuple[int, int], title: str) -> by
     embed_fonts()
     made = io.BytesIO()
     width, height = size
-    page = Canvas(made, pagesize=(POINTS * width, POINTS * height), invariant=1, pageCompression=1)
+    page = Canvas(made, pagesize=(_POINTS * width, _POINTS * height), invariant=1, pageCompression=1)
     page.setTitle(UNPRINTABLE.sub("�", title))
     page.setAuthor("")
     page.setCreator("Pinjoint")
-    page.scale(POINTS, POINTS)
+    page.scale(_POINTS, _POINTS)
     for picture in pictures:
         draw_picture(page, picture, height)
     page.showPage()
