@@ -21,7 +21,6 @@ from scipy.sparse.linalg import splu
 from pinjoint.components.arrays import Array
 from pinjoint.components.obstacles import Obstacles
 from pinjoint.systems.broad_phase import Rows, gaps, near_pairs
-from pinjoint.systems.statics.assembly import SYMMETRIC
 
 AROUND = 0.1  # of its radius around each disc, in which its neighbours are listed, and iterates are sought
 FARTHEST = 0.025  # of its radius: an equilibrium to which a disc would go farther is not near
@@ -146,7 +145,9 @@ class EquilibriumSearch:
         unbalanced = self._force + pushes @ force
         stiffness = force / slack
         matrix = (pushes @ diags(stiffness) @ opens + diags(self._inertia)).tocsc()
-        factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
+        factors = splu(
+            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
         missing = gap - slack
         wanted = barrier * self._scale / slack
         moved = factors.solve(self._force + pushes @ (wanted - stiffness * missing))
