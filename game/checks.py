@@ -605,10 +605,7 @@ def _fill(field: Field[Any], element: Any) -> None:
 
 
 def _draw(session: Session, size: tuple[int, int, float]) -> None:
-    """Draw a session as in a window of that size, to find what cannot be drawn."""
-    import pygame  # which takes a while
-
-    from pinjoint.systems.render.pygame_render import PygameRender
+    from pinjoint.systems.render.pygame_render import draw_unseen  # imports pygame
 
     session.update_view()
-    PygameRender(pygame.Surface(size[:2], depth=32)).process(Frame(session, FRAME))
+    draw_unseen(Frame(session, FRAME), size[:2])

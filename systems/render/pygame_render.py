@@ -63,6 +63,11 @@ class PygameRender(System):
             self.shown = id(self.surface), _looks(frame.session.stages)  # drawing may compute forces
 
 
+def draw_unseen(frame: Any, size: tuple[int, int]) -> None:
+    """Draw a frame as in a window of that size in pixels, to find what cannot be drawn."""
+    PygameRender(pygame.Surface(size, depth=32)).process(frame)
+
+
 def _bar(stages: Sequence[Stage]) -> object:
     """All that the strip of the toolbar follows from; None where others may be drawn there, or it reaches beyond."""
     bar, view = next((stage for stage in stages if isinstance(stage[0], Toolbar)), (None, None))
