@@ -547,7 +547,7 @@ def test_what_is_asked_is_named_as_a_person_would(path: str, said: str, translat
     assert question(session, path) == f"Asked: {said} (kN·m)."
     assert question(session, "largest rods.*.shear") == "Asked: The largest shear, whatever its sign (kN)."
     with spoken("pt"):
-        assert question(session, path) == f"Pedido: {translated} (kN·m)."
+        assert question(session, path) == f"Pede-se: {translated} (kN·m)."
 
 
 def test_the_box_that_a_lesson_speaks_of_is_in_sight_at_once(session: Session) -> None:
