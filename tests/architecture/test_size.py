@@ -13,21 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-<<<<<<< HEAD
-    "lines": 72_723,
-=======
-    "lines": 72_610,
->>>>>>> main
+    "lines": 72_618,
     "files": 388,
     "names": 3_879,  # functions, classes and constants of modules
     "public names": 2_226,
     "numbers": 1_479,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-<<<<<<< HEAD
-    "lines of tests": 60_805,
-=======
-    "lines of tests": 60_811,
->>>>>>> main
+    "lines of tests": 60_839,
 }
 
 
