@@ -516,7 +516,7 @@ class View:
         c, u = self.canvas, self.pixel_ratio
         if c.width >= LEAST_BESIDE * u:
             width = round(COLUMN * u)
-            return replace(c, left=c.left + c.width - width, width=width)
+            return Viewport(c.left + c.width - width, c.top, width, c.height)
         if c.height >= LEAST_ABOVE * u:
             return Viewport(c.left, c.top + c.height // 2, c.width, c.height - c.height // 2)
         return c
