@@ -62,7 +62,10 @@ def _button(one: Tool, theme: Theme, *, main: bool) -> Plate:
     ink = theme.panel if main else ink_of(theme, enabled=one.enabled)
     title = Text(one.title, (13.0, 12.0, 11.0), ink, "semibold", "centre", grow=1.0)
     inside = Row((title, Text(one.key, 11.0, faded(ink, 0.6))), 8.0, (8.0, 0.0, 0.0))
-    return button(inside, one.action, theme, enabled=one.enabled, stands_out=True, main=main, inset=0.0)
+    again = one.action == "hint"  # there is another one
+    return button(
+        inside, one.action, theme, enabled=one.enabled, stands_out=True, main=main, inset=0.0, again=again
+    )
 
 
 def _lines(card: Card, theme: Theme, width: float, u: float, points: float, loose: float) -> list[Part]:
