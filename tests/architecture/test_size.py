@@ -13,9 +13,9 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_721,
+    "lines": 72_739,
     "files": 388,
-    "names": 3_982,  # functions, classes and constants of modules
+    "names": 3_983,  # functions, classes and constants of modules
     "public names": 2_388,
     "numbers": 1_568,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
