@@ -13,9 +13,9 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_618,
+    "lines": 72_636,
     "files": 388,
-    "names": 3_879,  # functions, classes and constants of modules
+    "names": 3_880,  # functions, classes and constants of modules
     "public names": 2_226,
     "numbers": 1_479,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
