@@ -80,7 +80,7 @@ class Table(Generic[H]):
         self.state: list[str] = []  # names of the columns that time makes
         self.count = 0
         self.structure = 0  # revision of the last creation or deletion
-        self.entity: NDArray[np.int64] = np.empty(1 if kind.single else 8, dtype=np.int64)
+        self.entity: NDArray[np.int64] = np.empty(1 if kind.single else 8, dtype=np.int64)  # grows by doubling
         self.handles: list[H] = []
         self._columns: dict[str, Column] = {}
         self._read: dict[str, tuple[int, Column]] = {}  # with the revision: a picture asks for some 200

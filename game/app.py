@@ -247,7 +247,7 @@ class App:
     def next_frame(self, *, wait: bool = True) -> Frame:
         """A frame when it is time for it, or at once."""
         if wait:
-            self._clock.tick(60)
+            self._clock.tick(60)  # Hz
         now, before = time.perf_counter(), self._before
         self._before = now
         return self.frame(now - before)
@@ -273,7 +273,7 @@ class App:
 
     def _draw_plainly(self) -> None:
         """Show why there is no picture, with as little as that needs."""
-        surface, edge = self.render.surface, round(20.0 * self.session.view.pixel_ratio)
+        surface, edge = self.render.surface, round(20.0 * self.session.view.pixel_ratio)  # points of type
         surface.fill("black")
         self.render.shown, self.render.drawn = None, True
         with suppress(pygame.error):

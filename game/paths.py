@@ -90,7 +90,7 @@ Keys = Callable[[Table[Any]], Mapping[str, Field[Any]]]  # the facts of a table 
 
 def settable(table: Table[Any]) -> Mapping[str, Field[Any]]:
     """The facts that a person can set, by the keys of model files."""
-    fields = () if table.name in ("clock",) else table.fields_in(*SAVED)
+    fields = () if table.name in ("clock",) else table.fields_in(*SAVED)  # set by time
     return {field.name if field.component else field.key: field for field in fields if field.references is None}
 
 

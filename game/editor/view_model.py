@@ -290,7 +290,7 @@ def _flashes(context: Context) -> NDArray[np.float64]:
     if not context.busy or len(impacts) == 0:
         return np.zeros((0, 2))
     since = context.time - 0.15 * context.document.live.clock.shown_pace  # s shown
-    first = max(int(np.searchsorted(impacts.time, since)), len(impacts) - 500)
+    first = max(int(np.searchsorted(impacts.time, since)), len(impacts) - 500)  # the last
     return np.column_stack([impacts.x[first:], impacts.y[first:]])
 
 

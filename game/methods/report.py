@@ -450,7 +450,7 @@ def _balance(model: Model, state: SetState) -> Iterator[tuple[str, list[float]]]
                 parts = (x - x[about]) * forces[:, 1] - (y - y[about]) * forces[:, 0]
                 parts = parts + forces[:, 2] if forces.shape[1] > 2 else parts
             parts = parts[used & (np.abs(parts) > written.ROUNDING * largest(parts))]
-            terms += parts.tolist() if len(parts) <= 6 else [float(parts.sum())]
+            terms += parts.tolist() if len(parts) <= 6 else [float(parts.sum())]  # written one by one
         size = largest(state.reaction)
         terms = [term for term in terms if abs(term) > written.ROUNDING * size]
         yield name, terms

@@ -66,7 +66,7 @@ class _Watchdog:
                     self._fired, self.deadline = True, time.monotonic() + AGAIN
                     given = ctypes.c_ulong(self._thread), ctypes.py_object(TooLong)
                     ctypes.pythonapi.PyThreadState_SetAsyncExc(*given)
-            time.sleep(1e-4 if late else LOOK)
+            time.sleep(1e-4 if late else LOOK)  # s; it may be in a mod again at once
 
     def _runs(self) -> bool:
         """True if the thread is in code of the folder, or in code called by that which is not Pinjoint's own."""

@@ -42,7 +42,7 @@ def usual(model: Model, field: str) -> float:
     if field == "velocity":
         return 5.0  # m/s
     if field == "moment":
-        return 0.25 * usual(model, "force") * extent(model)
+        return 0.25 * usual(model, "force") * extent(model)  # a lever, as a share of the extent
     rods = model.rods
     span = float(rods.original_length.max(initial=0.0)) or 1.0
     if field == "distributed_force":

@@ -124,7 +124,7 @@ def pick_point(model: Model, view: View, pixel: Vector, besides: Handle | None =
 
 def pick_grid(model: Model, view: View, pixel: Vector) -> Grid | None:
     """The shown grid, if one of its lines is within reach of a pixel."""
-    reach = 5.0 * view.pixel_ratio
+    reach = 5.0 * view.pixel_ratio  # points
     if view.strip.contains(pixel):
         return None
     for row in np.flatnonzero(model.grids.shown).tolist():

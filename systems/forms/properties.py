@@ -213,7 +213,7 @@ def cases_named(model: Model) -> list[str]:
 def _combination_boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[Box]:
     """The name of each combination, and its factors in a row below; then the name of a new one."""
     known, combinations = cases_named(model), model.settings.combinations
-    across = min(len(known), 4)
+    across = min(len(known), 4)  # boxes of a combination
     for row, (name, factors) in enumerate(combinations.items()):
         box = _box(subject, field, f"{row}.{NAMED}", (name, ""), NAME, (REMOVE,))
         yield replace(box, title=marked("combination"), across=2)

@@ -62,7 +62,7 @@ class Slide(Placing):
         left, right, _ = place.track
         share = place.control.share
         knob = pixel[0] if share is None else left + share * (right - left)
-        held = share is not None and abs(knob - pixel[0]) <= 9.0 * place.unit
+        held = share is not None and abs(knob - pixel[0]) <= 9.0 * place.unit  # points: gripped
         self._grip = knob - pixel[0] if held else 0.0
         if not held:
             self.move(context, pixel)

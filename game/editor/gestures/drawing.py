@@ -638,7 +638,7 @@ class DrawSupport(Drawing):
         camera = context.view.camera
         level = abs(along[0]) > abs(along[1])
         side = (math.copysign(1.0, along[0]), 0.0) if level else (0.0, math.copysign(1.0, along[1]))
-        rim = max(self.particle.radius, 5.0 * context.view.pixel_ratio / camera.scale)
+        rim = max(self.particle.radius, 5.0 * context.view.pixel_ratio / camera.scale)  # points
         start = x + rim * side[0], y + rim * side[1]
         end = start[0] + side[0] / camera.scale, start[1] + side[1] / camera.scale
         symbols = ("guided", "clamped") if wanted[2] else ("roller", "pinned")

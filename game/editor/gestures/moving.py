@@ -184,7 +184,7 @@ class PullParticle(Gesture):
             Hand.on(context.model, context.view, particle, lambda: natural_pace(context.model))
         )
         # Where the pointer was of late, by simulated time, which a recording that is played knows, too.
-        self._path = deque([(context.time, particle.displacement)], maxlen=64)
+        self._path = deque([(context.time, particle.displacement)], maxlen=64)  # places
 
     def move(self, context: Context, pixel: Vector) -> None:
         x, y = context.view.camera.to_model(pixel)

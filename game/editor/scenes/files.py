@@ -155,7 +155,7 @@ def _read_picture(tile: Tile) -> None:
     try:
         if isinstance(tile.source, str):
             tile.picture = preview(tile.source)
-        elif tile.source.stat().st_size <= 4 * 2**20:
+        elif tile.source.stat().st_size <= 4 * 2**20:  # bytes; larger files get no picture
             tile.picture = preview(tile.source)
             tile.explanation = tile.picture.description or tile.picture.title
         else:

@@ -174,7 +174,7 @@ class Method(Scene):
         hint = joined([tr("Wheel more rows") if foot < wanted else "", hint], BETWEEN)
         part = joined([part, acting(context.model)], ": ")
         self._foot.status = Status(time=None, state=part, hint=hint)
-        self._head.legend = context.view.legend and whole.height >= 300.0 * ratio
+        self._head.legend = context.view.legend and whole.height >= 300.0 * ratio  # points
         explained = self._explained() if self._head.legend else ()
         head = round(
             heading_height(self._head.heading, whole.width, ratio, load_theme(context.view.theme), explained)

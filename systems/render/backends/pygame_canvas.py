@@ -98,7 +98,7 @@ class Canvas:
     def _kept(self, key: Any, make: Callable[..., Any], *what: Any) -> Any:
         found = self._cache.get(key)
         if found is None:
-            if len(self._cache) >= 4000:
+            if len(self._cache) >= 4000:  # rendered texts, symbols and panels
                 self._former, self._cache = self._cache, {}
             found = self._cache[key] = self._former.pop(key, None) or make(*what)
         return found

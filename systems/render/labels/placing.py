@@ -197,7 +197,7 @@ class _Placing:
         boxes, found = Boxes(middle, half, of), np.full(len(labels), -1)
         tried = _attempts(labels, of, held, cells, occupancy)
         number = np.arange(len(tried)) - np.searchsorted(of[tried], of[tried])
-        for begin, end in pairwise((0, 3, 1000)):
+        for begin, end in pairwise((0, 3, 1000)):  # candidates: the nearest first, then all
             now = tried[(number >= begin) & (number < end) & (found[of[tried]] < 0)]
             now = now[(own[of[now]] == NOBODY) | occupancy.may_be_of(cells[now], own[of[now]], kin[of[now]])]
             now = now[occupancy.parts.own_is_nearest(boxes.some(now), own, kin, clearly[now])]

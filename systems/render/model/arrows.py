@@ -158,7 +158,7 @@ def _draw_at_rims(
 
 def head_length(length: Values, unit: float) -> Values:
     """Length and width in pixels of the heads of arrows."""
-    return np.minimum(HEAD * unit, 0.65 * length)
+    return np.minimum(HEAD * unit, 0.65 * length)  # of short arrows
 
 
 def draw_arrows(
@@ -302,7 +302,7 @@ def _arrow_places(
     side = np.where(pushes, opposite, direction)
     gap = sheet.radii[rows] + 2.0 * u + np.where(supported & (sides[rows] == side), SUPPORT_DEPTH * u, 0.0)
     around = np.where(DIRECTIONS[side, 1] > 0.0, 0.0, sheet.arcs[rows])  # they are open below
-    gap = np.maximum(gap, around + np.where(around > 0.0, 6.0 * u, 0.0))
+    gap = np.maximum(gap, around + np.where(around > 0.0, 6.0 * u, 0.0))  # points off a moment's arrow
     outward = DIRECTIONS[side]
     start = sheet.centres[rows] + outward * gap[:, None]
     return start + outward * np.where(pushes, length, 0.0)[:, None], side
@@ -321,7 +321,7 @@ def _write_forces(
     texts = [f"{said(sheet, size, 'kN', bare=not few)}{case}" for size, case in sizes]
     font = sheet.font(12.0 if few else 11.0)
     half, start, end = half_sizes(sheet, texts, font), start[shown], end[shown]
-    places = by_arrows(half, start, end, 5.5 * sheet.unit)
+    places = by_arrows(half, start, end, 5.5 * sheet.unit)  # points
     out = (end - start) / np.hypot(*(end - start).T)[:, None]
     lines = np.stack([end, 0.5 * (start + end), start], axis=1)
     colour, ranks = sheet.colour_of(name), (FIRST - worth).tolist()

@@ -359,7 +359,7 @@ def _mark_zeros(sheet: Sheet, diagram: _Diagram) -> None:
     which, shares = which[kept], shares[kept]
     if not len(which):
         return
-    at, radius = diagram.at(which, shares)[0], np.full(len(which), 2.5 * sheet.unit)
+    at, radius = diagram.at(which, shares)[0], np.full(len(which), 2.5 * sheet.unit)  # points
     colour, of = faded(sheet.theme.ink, 0.9), ("rods", diagram.rows[which])
     sheet.above.append(Discs(at, radius, colour, sheet.theme.background, 1.25 * sheet.unit, of))
 

@@ -183,7 +183,7 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     smallest = min(max(0.18 * rod_length, _SMALLEST[0] * unit), _SMALLEST[1] * unit)
     radii: Values = np.maximum(model.particles.radius * camera.scale, smallest)
     if frame:
-        radii[rigid_joints(model) & (radii == smallest)] = 0.7 * smallest
+        radii[rigid_joints(model) & (radii == smallest)] = 0.7 * smallest  # rigid ones are smaller
     around = radii[:, None] + 40.0 * unit
     seen = (centres > low - around) & (centres < high + around)
     particles, occupancy = np.flatnonzero(seen[:, 0] & seen[:, 1]), Occupancy(viewport, unit)

@@ -61,7 +61,7 @@ def draw_grid(sheet: Sheet) -> None:
 
 def _grid_lines(low: float, high: float, spacing: float, sheet: Sheet) -> Values:
     pixels = spacing * sheet.view.camera.scale
-    step = spacing * max(round_up(8.0 * sheet.unit / pixels), 1.0)
+    step = spacing * max(round_up(8.0 * sheet.unit / pixels), 1.0)  # points at least
     first, last = math.ceil(low / step), math.floor(high / step)
     return step * (first + np.arange(last - first + 1, dtype=np.float64))
 
@@ -150,7 +150,7 @@ def draw_rods(sheet: Sheet) -> None:
         colours.append(colour)
     for index, colour in enumerate(colours):
         if (mask := number == index).any():
-            wider = 2.0 if sheet.shades else 1.35 if colour == theme.yielding else 1.0
+            wider = 2.0 if sheet.shades else 1.35 if colour == theme.yielding else 1.0  # room for a colour
             _draw_lines(sheet, slice(None) if mask.all() else mask, width * wider, colour)
     for name, wanted in (*by_force.items(), ("yielding", yielding)):
         sheet.explain(name, *sheet.lines(sheet.chosen(wanted, sheet.rods))[:2])
@@ -173,7 +173,7 @@ def _draw_lines(sheet: Sheet, mask: Truths | slice, width: float, colour: Colour
             some = ("rods", rows[which])
             sheet.marks.append(Strokes(start[which], end[which], factor * width, colour, some))
         return
-    thin, slack = 0.5 * width, np.zeros_like(cables)
+    thin, slack = 0.5 * width, np.zeros_like(cables)  # a cable
     if sheet.view.forces_known:
         slack = cables & (rods.axial_force[rows] <= 0.0)
     if slack.any():

@@ -153,7 +153,7 @@ def _label(sheet: Sheet, preview: Preview, at: Points) -> list[Mark]:
     u, v, theme, size = sheet.unit, sheet.viewport, sheet.theme, sheet.font(13.0)
     lines = [(preview.label, theme.muted if preview.typed else theme.text)] * bool(preview.label)
     if preview.problem:
-        refused = wrapped(preview.problem, 240.0 * u, size, "semibold")
+        refused = wrapped(preview.problem, 240.0 * u, size, "semibold")  # points across
         lines = [(line, theme.problem) for line in refused]
     lines = [(text.replace("-", "−"), ink) for text, ink in ((preview.typed, theme.text), *lines) if text]
     width = max(text_width(text, size, "semibold") for text, _ in lines) + 14.0 * u

@@ -85,7 +85,7 @@ def _knob(place: Place, theme: Theme, hovered: bool, at: Rectangle, u: float) ->
     if place.control.share is None:
         return [track]
     knob = np.array([[left + place.control.share * (right - left), middle]])
-    return [track, Stamps("disc", knob, (5.0 + float(hovered)) * u, u, theme.focus, theme.focus)]
+    return [track, Stamps("disc", knob, (5.0 + float(hovered)) * u, u, theme.focus, theme.focus)]  # points
 
 
 def _put_card(paper: Paper, model: Model, view: View, theme: Theme) -> None:

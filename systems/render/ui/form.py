@@ -101,7 +101,7 @@ class FormLayout:
             _Line("" if section in sections[:number] else section, [reading])
             for number, (section, reading) in enumerate(zip(sections, self.form.readings, strict=True))
         ]  # they stay while boxes are scrolled
-        if len(readings) * _READING * u > 0.4 * (v.height - 100.0 * u):
+        if len(readings) * _READING * u > 0.4 * (v.height - 100.0 * u):  # of the height, without being scrolled
             self.lines, readings = readings + self.lines, []
         message = Text(self.form.message, 12.0, theme.problem, lines=ALL, apart=16.0)
         said = Column([message] * bool(message.text), around=(0.0, 3.0, 3.0), high=22.0 if self.files else 8.0)
@@ -238,7 +238,7 @@ class FormLayout:
         pictured = [isinstance(line.items[0], Tile) and not _are_pills(line.items) for line in self.lines]
         ends = [number + 1 for number, has in enumerate(pictured) if has]
         begin = [end for end in ends if self.lines[end - 1].section]
-        needed = max(begin[:2], default=0)
+        needed = max(begin[:2], default=0)  # sections that are seen in any window
         for end in reversed(ends):
             fixed = sum(self._row(line, 0.0).height(self.u, self.width) for line in self.lines[:end])
             each = (room - fixed) / sum(pictured[:end]) / self.u

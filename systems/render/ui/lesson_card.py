@@ -44,7 +44,7 @@ def compose_lesson(card: Card, view: View, theme: Theme) -> Picture:
     title = Text(card.title, 15.0, theme.text, "semibold", grow=1.0)
     progress = Row((Text(card.progress, 12.0, theme.muted), Row(_dots(card, theme))), 12.0)
     head: Part = Row((title, progress), 16.0) if strip else Column((title, progress), 4.0)
-    for points, loose in ((14.0, 1.0), (12.0, 0.5)):
+    for points, loose in ((14.0, 1.0), (12.0, 0.5)):  # points of type, and air between lines
         width = v.width - (2 * _EDGE + (_BESIDE + _EDGE if strip else 0.0)) * u
         lines = _lines(card, theme, width, u, points, loose)
         text = Scroll(lines, first=card.first, from_end=bool(card.said), bar=theme.muted, beside=6.0, grow=1.0)

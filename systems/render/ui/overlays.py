@@ -104,7 +104,7 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
 
 def _heading(said: str, theme: Theme) -> Text:
     """The heading (the mode, or the next task), top left."""
-    return Text(said, 20.0, theme.text, "semibold", lines=ALL)
+    return Text(said, 20.0, theme.text, "semibold", lines=ALL)  # points
 
 
 def heading_height(text: str, width: float, unit: float, theme: Theme, explained: Sequence[str] = ()) -> float:
@@ -313,7 +313,7 @@ def _arranged(
     """A legend in rows, and whether it stands beside the heading, which takes the left up to `heading`, else below it."""
     entries = []
     for name, said in meanings:
-        wide = 70.0 if name in _SCALES else 16.0
+        wide = 70.0 if name in _SCALES else 16.0  # points: a scale, a symbol
         swatch = [] if name in _IN_WORDS else [Drawn(partial(_swatch, name, theme), wide)]
         text = Text(said, 11.0, theme.text, "semibold" if name in _IN_WORDS else "regular")
         entries.append(Row((*swatch, text), 6.0))

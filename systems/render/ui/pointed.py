@@ -41,7 +41,7 @@ def draw_pointed(sheet: Sheet, former: Placed) -> list[Mark]:
         row = np.array([pin.rod.row])
         share = min(pin.distance / float(sheet.model.rods.length[row[0]]), 1.0)
         at = view.camera.to_pixels(Axes.of(sheet.model, row).points(np.array([share]))[0])
-        size, ink = np.array([4.0 * sheet.unit]), sheet.theme.focus
+        size, ink = np.array([4.0 * sheet.unit]), sheet.theme.focus  # points
         marks += [
             Discs(at, size, ink, sheet.theme.hollow, RIM * sheet.unit),
             *_box(sheet, pin.told, pin.rod, at[0]),
