@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 from pinjoint.components.language import tr
@@ -25,6 +26,21 @@ class Mistake(Explained):
 
     The command line says it as it is; anything else that is raised is a fault of the program.
     """
+
+
+def wrong_variable(variable: str, remedy: str) -> Mistake:
+    """What is wrong with a variable of the environment; remedy: to what it can be set."""
+    return Mistake(
+        "{variable} is '{value}'; set it to {remedy}, or leave it out.",
+        variable=variable,
+        value=os.environ[variable],
+        remedy=remedy,
+    )
+
+
+def reason_of(error: Exception) -> str:
+    """Why a file cannot be read or written, in the words of the system where it has some."""
+    return getattr(error, "strerror", None) or str(error) or type(error).__name__
 
 
 class WrongValue(Explained, ValueError):

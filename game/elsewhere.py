@@ -22,6 +22,7 @@ import msgspec
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import language, speak, tr
+from pinjoint.components.mistake import reason_of
 from pinjoint.components.model import Model
 from pinjoint.documents.document import parse
 from pinjoint.mods.loading import load
@@ -173,7 +174,7 @@ class Elsewhere:
                 self._process = started({w.job: w.document or b"" for w in self._at_work}, self._urgent)
             except OSError as error:  # no room for another process, or for what it is given
                 for work in self._at_work:
-                    work.ended = error.strerror or str(error)
+                    work.ended = reason_of(error)
 
     @staticmethod
     def _end(process: subprocess.Popen[str]) -> None:

@@ -18,6 +18,8 @@ A law is a declaration and a kernel, a function of one row:
 from __future__ import annotations
 
 import math
+import os
+import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from enum import Enum, IntEnum
@@ -28,7 +30,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import marked
+from pinjoint.components.language import marked, tr
+from pinjoint.components.mistake import wrong_variable
 from pinjoint.components.model import Model
 from pinjoint.systems.program.entries import ACCOUNTS
 
@@ -48,6 +51,7 @@ __all__ = [
     "StepSystem",
     "StopReason",
     "System",
+    "cores",
 ]
 
 
@@ -96,6 +100,19 @@ DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come
 REVIEW_INTERVAL = 8192  # steps between reviews of the step size, and between safe states
 MOST_PARTS = 512  # of a step that are taken to show a moment within it
 EVENT_INTERVAL = 16  # steps, at multiples of which systems of phase EVENTS run where there are no frames
+_home = os.getpid()
+
+
+def cores() -> int:
+    """Number of cores that a computation may use: by PINJOINT_CORES, else as many as this process may. Raises Mistake.
+
+    One in a process that was forked, for the threads of its parent are not there.
+    """
+    there = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    asked = os.environ.get(CORES) or str(there)
+    if not re.fullmatch("0*[1-9][0-9]{0,8}", asked):
+        raise wrong_variable(CORES, tr("a whole number of at least 1"))
+    return min(int(asked), there) if os.getpid() == _home else 1
 
 
 class System(esper.Processor):  # type: ignore[misc,unused-ignore]

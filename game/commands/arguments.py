@@ -7,7 +7,7 @@ import itertools
 import math
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -58,8 +58,21 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def parse_args(self, *args: Any, **options: Any) -> Any:
-        """The options. Raises UsageError, also if what is to be written would replace what is read."""
+        """The options. Raises UsageError, also for one without effect, and if what is written would replace what is read."""
         found = super().parse_args(*args, **options)
+        given = {name: one for one in self._actions if _is_given(one, found) for name in one.option_strings}
+        for name, one in given.items():
+            beside, apart = getattr(one, "beside", ""), getattr(one, "apart", ())
+            if beside and beside not in given:
+                raise UsageError(
+                    "{option} works only together with {other}; add it.", option=name, other=beside
+                )
+            for other in filter(given.__contains__, apart):
+                raise UsageError(
+                    "{option} and {other} exclude each other; leave out one of the two.",
+                    option=name,
+                    other=other,
+                )
         self.keep(vars(found))
         return found
 
@@ -93,22 +106,38 @@ class Parser(argparse.ArgumentParser):
 
 
 def option(
-    to: argparse._ActionsContainer, usage: str, about: str, kind: Callable[[str], Any] = str, **how: Any
+    to: argparse._ActionsContainer,
+    usage: str,
+    about: str,
+    kind: Callable[[str], Any] = str,
+    *,
+    beside: str = "",
+    apart: Sequence[str] = (),
+    **how: Any,
 ) -> None:
     """Add an option, or an argument, to a parser or a group of options.
 
     usage: how it is written, such as "--seed N". about: its sentence in --help, in the language of the person. kind: makes
-    a value of what a person writes.
+    a value of what a person writes. beside, apart: the option without which, and those beside which, it has no effect.
     """
     name, _, value = usage.partition(" ")
     if "action" not in how or value:
         how = {"metavar": value or None, "type": kind} | how
-    to.add_argument(name, help=tr(about).replace("%", "%%"), **how)  # argparse takes % for a place to fill
+    added = to.add_argument(
+        name, help=tr(about).replace("%", "%%"), **how
+    )  # argparse takes % for a place to fill
+    vars(added).update(beside=beside, apart=apart)
 
 
-def flag(to: argparse._ActionsContainer, name: str, about: str) -> None:
-    """Add an option without a value."""
-    option(to, name, about, action="store_true")
+def flag(to: argparse._ActionsContainer, name: str, about: str, **how: Any) -> None:
+    """Add an option without a value; how: as of `option`."""
+    option(to, name, about, action="store_true", **how)
+
+
+def _is_given(action: argparse.Action, found: argparse.Namespace) -> bool:
+    """True if a person wrote an option, with another value than it has without."""
+    value = getattr(found, action.dest, action.default)
+    return bool(value == action.const if action.nargs == 0 else value != action.default)
 
 
 def _is_one_file(one: Path, other: Path) -> bool:

@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
+from pathlib import Path
 
 from pinjoint.commands import Command
 from pinjoint.commands.arguments import BAD_INPUT
@@ -15,7 +16,9 @@ from pinjoint.commands.with_mods import load_as_asked
 from pinjoint.completion import complete
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr
-from pinjoint.components.mistake import Mistake
+from pinjoint.components.mistake import Mistake, reason_of, wrong_variable
+from pinjoint.documents.library import DATA_VARIABLE
+from pinjoint.documents.preferences import CONFIG_VARIABLE
 from pinjoint.mods.mod import switched_off
 from pinjoint.streams import discard_output, tell
 
@@ -26,6 +29,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     complete()
     try:
+        for variable in (DATA_VARIABLE, CONFIG_VARIABLE):
+            if Path(os.environ.get(variable, "")).is_file():
+                raise wrong_variable(variable, tr("a folder"))
         words = load_as_asked(use_cores_as_asked(words))
         command = words[0] if words and words[0] in COMMANDS else "open"
         status = COMMANDS[command].run(words[1:] if command in words[:1] else words)
@@ -46,8 +52,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if error.filename is None:
             discard_output()
         place = error.filename or tr("Standard output")
-        reason = error.strerror or error
-        tell(tr("{file} cannot be read or written: {reason}.", file=place, reason=reason))
+        tell(tr("{file} cannot be read or written: {reason}.", file=place, reason=reason_of(error)))
         return BAD_INPUT
 
 

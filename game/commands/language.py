@@ -8,7 +8,8 @@ from collections.abc import Iterable, Sequence
 
 from pinjoint.commands.arguments import Parser, UsageError
 from pinjoint.components.field import FieldError
-from pinjoint.components.language import ENGLISH, LANGUAGES, speak
+from pinjoint.components.language import ENGLISH, LANGUAGES, several, speak
+from pinjoint.components.mistake import wrong_variable
 from pinjoint.components.units import show_in
 from pinjoint.documents.preferences import preferred
 
@@ -21,16 +22,21 @@ def speak_as_asked(words: Sequence[str]) -> list[str]:
     Likewise numbers are shown in the units of --units. Returns the other words. Raises UsageError for what there is not.
     """
     speak(asked_language() or preferred("language") or language_of_system())
+    if os.environ.get(VARIABLE) and not asked_language():
+        raise wrong_variable(VARIABLE, several(LANGUAGES))
     parser = Parser(add_help=False, allow_abbrev=False)
     parser.add_argument("--language", metavar="CODE")
-    parser.add_argument("--units", default=asked_units())
+    parser.add_argument("--units")
     options, others = parser.parse_known_args(list(words))
-    if options.units:
+    if units := options.units or asked_units():
         try:
-            show_in(options.units)
+            show_in(units)
         except FieldError as error:
-            raise UsageError("--units {units}: {reason}", units=options.units, reason=str(error)) from None
-        os.environ[UNITS] = options.units
+            option = "--units" if options.units else UNITS
+            raise UsageError(
+                "{option} {units}: {reason}", option=option, units=units, reason=str(error)
+            ) from None
+        os.environ[UNITS] = units
     if options.language is not None:
         if not (code := _known([options.language])):
             raise UsageError(

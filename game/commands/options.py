@@ -6,7 +6,7 @@ import argparse
 import os
 from collections.abc import Iterable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pinjoint.commands.analysis import Analysis
 from pinjoint.commands.arguments import Parser, UsageError, count, flag, numbers, option, positive, times
@@ -22,7 +22,7 @@ from pinjoint.documents import models
 from pinjoint.documents.format import ModelError, missing_mods
 from pinjoint.paths import apply_override
 from pinjoint.streams import tell
-from pinjoint.systems.base import CORES, DEFAULT_LIMIT, System
+from pinjoint.systems.base import CORES, DEFAULT_LIMIT, System, cores
 
 if TYPE_CHECKING:  # statics needs no session
     from pinjoint.headless import Headless
@@ -32,42 +32,43 @@ ANSWERED, NOT_ANSWERED, NO_DISPLAY, STOPPED = 0, 1, 3, 130  # exit statuses; BAD
 
 
 def use_cores_as_asked(words: Sequence[str]) -> list[str]:
-    """Read the option --cores N, which every command has, into the environment; returns the other words."""
+    """Read the option --cores N, which every command has, into the environment; returns the other words. Raises Mistake."""
     parser = Parser(add_help=False, allow_abbrev=False)
     parser.add_argument("--cores", type=partial(count, least=1), metavar="N")
     options, others = parser.parse_known_args(list(words))
     if options.cores is not None:
         os.environ[CORES] = str(options.cores)  # for this process and those that it starts
+    cores()
     return others
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:
     """Add the argument MODEL and the options that change the model before anything is computed."""
     option(parser, "model", "a model file, or the name of a bundled model")
-    change: dict[str, Any] = {"dest": "set", "action": "append", "default": []}
-    how = tr("how to step through time: {names}", names=", ".join(INTEGRATORS))
-    option(parser, "--integrator NAME", how, "settings.integrator={}".format, **change)
     option(
-        parser,
-        "--time-step S",
-        "use a fixed time step, in seconds",
-        lambda text: f"settings.time_step={positive(text)}",
-        **change,
-    )
-    option(
-        parser,
-        "--combination NAME",
-        "let a combination of load cases of its settings act, or one case alone",
-        "settings.combination={}".format,
-        **change,
+        parser, "--combination NAME", "let a combination of load cases of its settings act, or one case alone"
     )
     option(
         parser,
         "--set PATH=VALUE",
         "change a value of the model first, such as particles.B.force=120,-160 or rods.*.damping=0;"
         " may be given several times",
-        **change,
+        action="append",
+        default=[],
     )
+
+
+def add_steps(parser: argparse.ArgumentParser, *apart: str) -> None:
+    """Add the options of how time passes; apart: options with which none does."""
+    how = tr("how to step through time: {names}", names=", ".join(INTEGRATORS))
+    option(parser, "--integrator NAME", how, apart=apart)
+    option(parser, "--time-step S", "use a fixed time step, in seconds", positive, apart=apart)
+
+
+def changes(options: argparse.Namespace) -> list[str]:
+    """What the options change of a model, as overrides."""
+    named = {name: getattr(options, name, None) for name in ("integrator", "time_step", "combination")}
+    return [*(f"settings.{name}={value}" for name, value in named.items() if value is not None), *options.set]
 
 
 def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> Session:
@@ -101,7 +102,7 @@ def _prepare(model: Model, options: argparse.Namespace, *progress: Progress) -> 
     """Tell how far a run of the model is, and change it as the options ask."""
     follow(*progress)
     tell(missing_mods(model))  # which would change the result
-    for override in options.set:
+    for override in changes(options):
         apply_override(model, override)
     if problem := incomputable(model):
         raise ModelError(f"{options.model}: {problem}")
@@ -119,6 +120,7 @@ def add_theory(parser: argparse.ArgumentParser, default: str | None = EXACT) -> 
         ),
         choices=THEORIES,
         default=default,
+        beside="" if default else "--static",
     )
 
 
@@ -132,22 +134,34 @@ def add_analysis(parser: argparse.ArgumentParser) -> None:
         parser,
         "--load-factors F1,F2,…",
         "with --static: find the equilibrium at each of these load factors, one after the other",
+        beside="--static",
     )
     add_theory(parser, None)
+    add_steps(parser, "--static")
     option(
         parser,
         "--limit SECONDS",
         "stop waiting for rest after this much simulated time",
         positive,
         default=DEFAULT_LIMIT,
+        apart=("--static", "--at"),
     )
 
 
-def add_envelope(parser: argparse.ArgumentParser) -> None:
+def add_envelope(parser: argparse.ArgumentParser, beside: str = "") -> None:
     """Add the options of envelopes in statics, of combinations or of a force along a path."""
-    flag(parser, "--envelope", "of statics: the least and the most in all combinations of load cases")
+    flag(
+        parser,
+        "--envelope",
+        "of statics: the least and the most in all combinations of load cases",
+        beside=beside,
+    )
     option(
-        parser, "--path ROD", "the same while a force, settings.moving_force, moves along these rods", nargs="+"
+        parser,
+        "--path ROD",
+        "the same while a force, settings.moving_force, moves along these rods",
+        nargs="+",
+        beside=beside,
     )
 
 
@@ -164,11 +178,6 @@ def path_of(options: argparse.Namespace, model: Model) -> list[str] | None:
 def analysis_of(options: argparse.Namespace) -> Analysis:
     """The analysis of `add_analysis`. Raises UsageError."""
     factors = numbers("--load-factors", options.load_factors) if options.load_factors is not None else None
-    for name, given in (("--load-factors", factors), ("--theory", options.theory)):
-        if given is not None and not options.static:
-            raise UsageError(
-                "{option} works only together with {other}; add it.", option=name, other="--static"
-            )
     return Analysis(
         load_factors=(factors or (1.0,)) if options.static else None,
         times=times(options.at) if options.at is not None else None,

@@ -15,7 +15,7 @@ import numpy as np
 from pinjoint.commands.arguments import UsageError, option
 from pinjoint.components import written
 from pinjoint.components.language import ENGLISH, Said, decimals, english, spoken, tr
-from pinjoint.components.mistake import Mistake
+from pinjoint.components.mistake import Mistake, reason_of
 from pinjoint.components.wording import printable
 from pinjoint.documents.models import laid_out, replace
 from pinjoint.streams import encodable_json, put
@@ -119,9 +119,9 @@ def writing(place: object) -> Iterator[None]:
     except BrokenPipeError:
         raise
     except OSError as error:
-        reason = error.strerror or error
-        message = tr("{file} cannot be written: {reason}. Choose another file.", file=place, reason=reason)
-        raise UsageError(message) from None
+        raise UsageError(
+            "{file} cannot be written: {reason}. Choose another file.", file=place, reason=reason_of(error)
+        ) from None
 
 
 # --- values as text ------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pinjoint.commands.arguments import Parser, UsageError, option
-from pinjoint.commands.options import ANSWERED, add_model, session_of
+from pinjoint.commands.options import ANSWERED, add_model, add_steps, session_of
 from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.components.language import tr
 from pinjoint.session import Session
@@ -22,6 +22,7 @@ def command(words: Sequence[str]) -> int:
         "List the systems (parts of the program) that run in a scene of the window, in their order in a frame.",
     )
     add_model(parser)
+    add_steps(parser)
     option(parser, "--scene NAME", "the scene; default simulation", default="simulation")
     add_output(parser)
     options = parser.parse_args(words)

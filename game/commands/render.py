@@ -20,6 +20,7 @@ from pinjoint.commands.options import (
     NOT_ANSWERED,
     add_envelope,
     add_model,
+    add_steps,
     add_theory,
     path_of,
     session_of,
@@ -59,7 +60,13 @@ def command(words: Sequence[str]) -> int:
             endings=", ".join(_PICTURES),
         )
     _check_background(options)
-    _check_static(options)
+    animated = options.output.lower().endswith(".gif")
+    if options.static and animated:
+        raise UsageError(
+            "{option} and {other} exclude each other; leave out one of the two.",
+            option="--static",
+            other=".gif",
+        )
     session = session_of(options)
     session.view.all_diagrams = options.diagrams or options.diagrams_of is not None
     session.view.quantity = options.diagrams_of or session.view.quantity
@@ -67,7 +74,7 @@ def command(words: Sequence[str]) -> int:
     if options.plain:
         session.view.has_scale = False
         session.model.delete(list(session.model.grids))
-    draw = _animate if options.output.lower().endswith(".gif") else _draw
+    draw = _animate if animated else _draw
     with writing(options.output):
         status = draw(session, options, (width, height))
     if status in FOUND:
@@ -92,8 +99,9 @@ def _parser() -> Parser:
         "the size in pixels; default 1280x800; type grows with it",
         default="1280x800",
     )
-    flag(parser, "--until-rest", "run until at rest first (the default of a .gif)")
-    option(parser, "--at T", "run to this time (s) first", positive)
+    flag(parser, "--until-rest", "run until at rest first (the default of a .gif)", apart=("--static",))
+    option(parser, "--at T", "run to this time (s) first", positive, apart=("--static", "--until-rest"))
+    add_steps(parser, "--static")
     flag(
         parser,
         "--static",
@@ -107,6 +115,7 @@ def _parser() -> Parser:
         "with --static: draw the undeformed structure, and its deflected shape thin (the usual way)",
         action="store_true",
         default=None,
+        beside="--static",
     )
     option(
         undeformed,
@@ -115,6 +124,7 @@ def _parser() -> Parser:
         action="store_false",
         dest="undeformed",
         default=None,
+        beside="--static",
     )
     flag(parser, "--diagrams", "draw all force diagrams")
     option(
@@ -140,7 +150,7 @@ def _parser() -> Parser:
         "--influence NAME",
         "also draw an influence line: of AB, AB.start, AB.end, AB.shear, AB.M@1.5 (also N, V; 50 %), A.y or B.rotation",
     )
-    add_envelope(parser)
+    add_envelope(parser, "--static")
     option(parser, "--theme", "the colours; default light", choices=theme_names(), default="light")
     option(
         parser,
@@ -173,18 +183,6 @@ def _check_background(options: argparse.Namespace) -> None:
             "--background white: the theme {theme} has light text, which cannot be read on white; choose a light theme.",
             theme=options.theme,
         )
-
-
-def _check_static(options: argparse.Namespace) -> None:
-    """Raise UsageError where an option does not go with statics."""
-    shapes = {True: "--undeformed", False: "--deformed", None: ""}
-    option = "--theory" if options.theory is not None else shapes[options.undeformed]
-    option = option or "--path" * bool(options.path) or "--envelope" * options.envelope
-    if option and not options.static:
-        raise UsageError("{option} works only together with {other}; add it.", option=option, other="--static")
-    moving = options.until_rest or options.at is not None or options.output.lower().endswith(".gif")
-    if options.static and moving:
-        raise UsageError("--static: nothing moves in statics; leave out --until-rest, --at and .gif.")
 
 
 def _solve(session: Session, options: argparse.Namespace) -> str:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from pinjoint.commands import envelope
 from pinjoint.commands.analysis import FOUND, INTERRUPTED, Run, State
-from pinjoint.commands.arguments import Parser, UsageError, flag, option
+from pinjoint.commands.arguments import Parser, flag, option
 from pinjoint.commands.options import (
     ANSWERED,
     NOT_ANSWERED,
@@ -48,19 +48,17 @@ def command(words: Sequence[str]) -> int:
     add_model(parser)
     add_analysis(parser)
     add_output(parser)
-    option(parser, "--events FILE", "write all impacts to this file, as CSV", writable)
+    option(parser, "--events FILE", "write all impacts to this file, as CSV", writable, apart=("--static",))
     flag(
-        parser, "--measure-error", "measure the error by a second run with finer steps, even if that takes long"
+        parser,
+        "--measure-error",
+        "measure the error by a second run with finer steps, even if that takes long",
+        apart=("--static",),
     )
-    option(parser, "--case NAME", "let one load case act alone")
-    add_envelope(parser)
+    option(parser, "--case NAME", "let one load case act alone", apart=("--combination",))
+    add_envelope(parser, "--static")
     options = parser.parse_args(words)
     analysis = replace(analysis_of(options), measures_error=options.measure_error)
-    wanted = "--path" if options.path else "--envelope" * options.envelope
-    if wanted and not options.static:
-        raise UsageError("{option} works only together with {other}; add it.", option=wanted, other="--static")
-    if options.case is not None and any(change.startswith("settings.combination=") for change in options.set):
-        raise UsageError("--case and --combination exclude each other; leave out one of the two.")
     if analysis.load_factors is not None:
         model = model_of(options)
         if options.case is not None:

@@ -8,8 +8,17 @@ from pathlib import Path
 
 from pinjoint.commands.analysis import FOUND
 from pinjoint.commands.arguments import Parser, UsageError, option
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, add_analysis, add_model, analysis_of
+from pinjoint.commands.options import (
+    ANSWERED,
+    NOT_ANSWERED,
+    STOPPED,
+    add_analysis,
+    add_model,
+    analysis_of,
+    changes,
+)
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import reason_of
 from pinjoint.streams import tell
 from pinjoint.sweeps import sweep
 from pinjoint.sweeps.variation import FORMS
@@ -29,7 +38,7 @@ def command(words: Sequence[str]) -> int:
             options.vary,
             options.measure,
             analysis_of(options),
-            overrides=options.set,
+            overrides=changes(options),
             samples=options.samples,
             seed=options.seed,
             output=options.output,
@@ -43,9 +52,11 @@ def command(words: Sequence[str]) -> int:
         tell(tr("Interrupted. Use the same command again to go on from here."))
         return STOPPED
     except OSError as error:
-        file, reason = error.filename or options.output, error.strerror
-        message = tr("{file} cannot be written: {reason}. Choose another file.", file=file, reason=reason)
-        raise UsageError(message) from None
+        raise UsageError(
+            "{file} cannot be written: {reason}. Choose another file.",
+            file=error.filename or options.output,
+            reason=reason_of(error),
+        ) from None
     counts = results.counts()
     told = {
         "file": options.output,

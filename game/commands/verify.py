@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from pinjoint.commands import comparison, influence
 from pinjoint.commands.arguments import Parser, UsageError, flag, option, positive
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, headless_of
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_steps, headless_of
 from pinjoint.commands.output import add_output, write_result
 from pinjoint.systems.statics.events import NoEquilibrium
 
@@ -26,20 +26,24 @@ def command(words: Sequence[str]) -> int:
         " reaction, A.y or A.rotation; or of a displacement, B.y (unit-load method)",
         nargs="+",
     )
-    option(parser, "--path ROD", "with --influence: the rods along which the force moves; else all", nargs="+")
-    flag(parser, "--theory-only", "leave out the simulation")
+    option(
+        parser,
+        "--path ROD",
+        "with --influence: the rods along which the force moves; else all",
+        nargs="+",
+        beside="--influence",
+    )
+    flag(parser, "--theory-only", "leave out the simulation", apart=("--influence",))
+    add_steps(parser, "--influence", "--theory-only")
     option(
         parser,
         "--limit SECONDS",
         "simulate until at rest, at most for this time; without it, a simulation that would take long is left out",
         positive,
+        apart=("--influence", "--theory-only"),
     )
     add_output(parser)
     options = parser.parse_args(words)
-    if options.path and not options.influence:
-        raise UsageError(
-            "{option} works only together with {other}; add it.", option="--path", other="--influence"
-        )
     session = headless_of(options)
     try:
         if options.influence:

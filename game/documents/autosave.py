@@ -15,6 +15,7 @@ from typing import Any
 import msgspec
 
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import reason_of
 from pinjoint.documents import library, models
 from pinjoint.documents.facts import Facts
 from pinjoint.documents.open_documents import OpenDocument
@@ -36,7 +37,7 @@ def unkept(folder: Path, error: Exception) -> str:
         "Unsaved work cannot be kept in {folder}, so a crash would lose it: {reason}. Make room there, or set {variable} to"
         " another folder and start Pinjoint again.",
         folder=folder,
-        reason=getattr(error, "strerror", None) or str(error) or type(error).__name__,
+        reason=reason_of(error),
         variable=library.DATA_VARIABLE,
     )
 

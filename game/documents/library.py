@@ -15,7 +15,7 @@ from platformdirs import user_data_path
 from pinjoint.components import wording
 from pinjoint.components.form import fits_file_names
 from pinjoint.components.language import plural, tr
-from pinjoint.components.mistake import Explained
+from pinjoint.components.mistake import Explained, reason_of
 from pinjoint.documents import models, preferences
 
 DATA_VARIABLE = "PINJOINT_DATA"  # names another folder than the system's own
@@ -94,9 +94,10 @@ def choose_folder(typed: str, *, make: bool) -> None:
     except NameRefused:
         raise
     except (OSError, RuntimeError, ValueError) as error:  # such as of an unknown user's ~
-        reason = getattr(error, "strerror", None) or str(error)
         raise NameRefused(
-            "The folder {folder} cannot be used: {reason}. Write another one.", folder=typed, reason=reason
+            "The folder {folder} cannot be used: {reason}. Write another one.",
+            folder=typed,
+            reason=reason_of(error),
         ) from None
     preferences.keep(data_folder() / _PLACES, "folder", "" if folder == own_folder() else str(folder))
 

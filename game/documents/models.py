@@ -24,6 +24,7 @@ import msgspec
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.mistake import reason_of
 from pinjoint.components.model import Model
 from pinjoint.components.wording import nearest, quoted
 from pinjoint.documents.document import document, parse
@@ -113,7 +114,7 @@ def load(source: str | Path | Mapping[str, Any]) -> Model:
         raise ModelError(
             "{source} cannot be read: {reason}. Check its path and permissions.",
             source=source,
-            reason=_reason(error),
+            reason=reason_of(error),
         ) from None
     with _nothing_collected():
         return parse(_decoded(raw, str(source)), str(source))
@@ -140,10 +141,6 @@ def _found(source: str | Path) -> Path | Traversable:
 def name_of(path: Path) -> str:
     """What the model in a file is called; bytes that are no text as "�"."""
     return os.fsencode(path.stem).decode(errors="replace")
-
-
-def _reason(error: Exception) -> str:
-    return (error.strerror if isinstance(error, OSError) else None) or str(error)
 
 
 def _decoded(raw: bytes, source: str) -> Any:
@@ -239,7 +236,7 @@ def save(model: Model, path: str | Path) -> None:
         raise ModelError(
             "{path} was not saved: {reason}. The file is as it was before; choose another folder or name.",
             path=path,
-            reason=_reason(error),
+            reason=reason_of(error),
         ) from None
 
 

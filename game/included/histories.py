@@ -19,7 +19,7 @@ import numpy as np
 from pinjoint.components import FieldError, HistoryKind, Load, Model, Vector
 from pinjoint.components.language import marked
 from pinjoint.components.load import History
-from pinjoint.components.mistake import WrongValue
+from pinjoint.components.mistake import WrongValue, reason_of
 from pinjoint.components.wording import quoted
 from pinjoint.mods import App
 
@@ -162,7 +162,7 @@ def run(words: list[str]) -> int:
         shake(model, record, DIRECTIONS[options.direction])
     except OSError as error:
         raise UsageError(
-            "{file} cannot be read: {reason}. Check its path.", file=options.record, reason=error.strerror
+            "{file} cannot be read: {reason}. Check its path.", file=options.record, reason=reason_of(error)
         ) from None
     except ValueError as error:
         raise UsageError(str(error)) from None

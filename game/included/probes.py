@@ -330,11 +330,12 @@ def _heading(probe: Probe) -> str:
 def run(words: list[str]) -> int:
     """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
     from pinjoint.commands.arguments import Parser, UsageError, count, option, positive
-    from pinjoint.commands.options import add_model, headless_of
+    from pinjoint.commands.options import add_model, add_steps, headless_of
     from pinjoint.commands.output import writable, writing
 
     parser = Parser("plot", "Run a model and write quantities against time or another quantity.")
     add_model(parser)
+    add_steps(parser)
     option(parser, "--of PATH", "such as rods.AB.axial_force", action="append", required=True)
     option(parser, "--against PATH", "default: time", default=TIME)
     option(parser, "--until T", "simulated time (s)", positive, required=True)

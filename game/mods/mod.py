@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from pinjoint.components import written
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import english, joined, tr
-from pinjoint.components.mistake import Mistake
+from pinjoint.components.mistake import Mistake, reason_of
 from pinjoint.components.wording import is_identifier, printable, quoted
 from pinjoint.interrupts import is_persons
 from pinjoint.mods.declared import check, check_has_run, fits
@@ -206,8 +206,7 @@ def _entries(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
-        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise ModError("{file} cannot be read: {reason}.", file=MANIFEST, reason=reason) from None
+        raise ModError("{file} cannot be read: {reason}.", file=MANIFEST, reason=reason_of(error)) from None
     except RecursionError:
         raise ModError("{file} is nested too deeply; write it simpler.", file=MANIFEST) from None
     except tomllib.TOMLDecodeError as error:

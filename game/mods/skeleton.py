@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from pinjoint.components.mistake import reason_of
 from pinjoint.mods.loading import origin_of_module
 from pinjoint.mods.mod import MANIFEST, ModError, check_name
 
@@ -85,6 +86,6 @@ def write_skeleton(name: str, parent: Path, version: str) -> list[Path]:
         raise ModError(
             "{folder} cannot be written: {reason}. Choose another folder with --into.",
             folder=folder,
-            reason=error.strerror,
+            reason=reason_of(error),
         ) from None
     return paths

@@ -11,6 +11,7 @@ from typing import Any, TextIO
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import ENGLISH, joined, language, spoken, tr
+from pinjoint.components.mistake import reason_of
 from pinjoint.components.settings import STATICS
 from pinjoint.components.units import USUAL, shown_in, units_on_screen
 from pinjoint.components.wording import is_broken
@@ -126,7 +127,7 @@ class Recorder:
             said = tr(
                 "The recording ends here: {file} cannot be written: {reason}.",
                 file=self._file.name,
-                reason=error.strerror,
+                reason=reason_of(error),
             )
             self._session.notice = said
             LOG.warning(said)

@@ -41,7 +41,7 @@ from typing import Any
 
 from pinjoint.components.field import FieldError
 from pinjoint.components.language import ENGLISH, LANGUAGES, tr
-from pinjoint.components.mistake import Mistake
+from pinjoint.components.mistake import Mistake, reason_of
 from pinjoint.components.settings import STATICS
 from pinjoint.components.units import USUAL, shown_in
 from pinjoint.components.wording import as_json, cut, remedy
@@ -152,7 +152,7 @@ class Script:
             ) from None
         except OSError as error:
             raise ScriptError(
-                "{file} cannot be read: {reason}. Check its path.", file=self.path, reason=error.strerror
+                "{file} cannot be read: {reason}. Check its path.", file=self.path, reason=reason_of(error)
             ) from None
         except UnicodeDecodeError as error:
             raise ScriptError(

@@ -20,9 +20,8 @@ from pinjoint.documents import models
 from pinjoint.paths import apply_override, locate, quoted, settable
 from pinjoint.sweeps.plan import Outcome, Plan, Record
 from pinjoint.sweeps.variation import INSTALL, SweepError, as_text
-from pinjoint.systems.base import CORES
+from pinjoint.systems.base import CORES, cores
 from pinjoint.systems.catalogue import all_systems
-from pinjoint.systems.program.reordered import cores
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
 

@@ -24,7 +24,7 @@ from types import ModuleType, SimpleNamespace
 from typing import Any
 
 from pinjoint.components.language import begun, tr
-from pinjoint.components.mistake import Mistake
+from pinjoint.components.mistake import wrong_variable
 from pinjoint.systems.program import cache
 from pinjoint.systems.program.binding import ProgramError
 from pinjoint.systems.program.identity import key_of, reached_from
@@ -44,15 +44,10 @@ class Compile(Enum):
 
 
 def _asked() -> Compile:
-    said = os.environ.get(VARIABLE, "")
     try:
-        return Compile(said)
+        return Compile(os.environ.get(VARIABLE, ""))
     except ValueError:
-        raise Mistake(
-            "{variable} is '{value}'; set it to never or always, or leave it out.",
-            variable=VARIABLE,
-            value=said,
-        ) from None
+        raise wrong_variable(VARIABLE, tr("never or always")) from None
 
 
 VARIABLE = "PINJOINT_COMPILE"

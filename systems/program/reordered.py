@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from pinjoint.components.field import Column, Role
 from pinjoint.components.model import Model
 from pinjoint.components.table import read_only
-from pinjoint.systems.base import CORES, Integrator, StepSystem
+from pinjoint.systems.base import Integrator, StepSystem, cores
 from pinjoint.systems.program.binding import bind
 from pinjoint.systems.program.blocks import Layout, Numbers
 from pinjoint.systems.program.program import OBSERVED, Program
@@ -21,19 +20,6 @@ from pinjoint.systems.program.writer import PUSHED, VERY_MANY, form_of
 
 _SPINS = "10000"  # some 0.1 ms that a core waits awake: waking it costs as much as a step of 10 000 rods
 _WORTHWHILE = 100_000  # rods from which a layer that takes 50 µs to start the cores is worth it
-_home = os.getpid()
-
-
-def cores() -> int:
-    """Number of cores that a computation may use: by PINJOINT_CORES, else as many as this process may.
-
-    One in a process that was forked, for the threads of its parent are not there.
-    """
-    if os.getpid() != _home:
-        return 1
-    there = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    asked = os.environ.get(CORES, "")
-    return min(max(int(asked), 1), there) if re.fullmatch("[0-9]{1,9}", asked) else there
 
 
 class ReorderedProgram(Program):

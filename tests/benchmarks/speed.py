@@ -22,7 +22,7 @@ from pinjoint import Session
 from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.documents.document import document
-from pinjoint.systems.program.reordered import cores
+from pinjoint.systems.base import cores
 from pinjoint.systems.program.writer import MANY, VERY_MANY
 from tests.benchmarks import skipping
 from tests.benchmarks.ceiling import BYTES_PER_PARTICLE, BYTES_PER_ROD, bandwidth, seconds_per_rod

@@ -161,7 +161,7 @@ def test_results_of_commands_keep_the_units_of_the_contract(
 
 def test_units_that_there_are_not_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PINJOINT_UNITS", "miles")
-    with pytest.raises(UsageError, match="“miles” is no unit on screen"):
+    with pytest.raises(UsageError, match="PINJOINT_UNITS miles: “miles” is no unit on screen"):
         speak_as_asked(["run"])
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from pinjoint.components.form import FILE_NAME, TEXT, Box, Form, Tile
 from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.mistake import reason_of
 from pinjoint.documents import library, models
 from pinjoint.documents.previews import preview
 from pinjoint.editor.context import Context
@@ -216,7 +217,7 @@ class Save(FileScene):
             self.form.message = tr(
                 "The folder {folder} cannot be made: {reason}. Write another one where you may write.",
                 folder=library.models_folder(),
-                reason=error.strerror,
+                reason=reason_of(error),
             )
             return
         except (library.NameRefused, models.ModelError) as error:

@@ -141,11 +141,36 @@ def test_help_says_what_each_command_does(
             "--case and --combination exclude each other",
         ),
         ("verify isostatic --path AB", "--path works only together with --influence"),
+        ("verify isostatic --theory-only --limit 3", "--limit and --theory-only exclude each other"),
+        ("run isostatic --load-factors 1", "--load-factors works only together with --static; add it."),
+        ("run isostatic --theory exact", "--theory works only together with --static"),
+        ("run isostatic --path AB", "--path works only together with --static"),
+        (
+            "run isostatic --static --limit 3",
+            "--limit and --static exclude each other; leave out one of the two.",
+        ),
+        ("run isostatic --at 1 --limit 3", "--limit and --at exclude each other"),
+        ("run isostatic --static --time-step 0.01", "--time-step and --static exclude each other"),
+        ("run isostatic --static --integrator rk4", "--integrator and --static exclude each other"),
+        ("run isostatic --static --measure-error", "--measure-error and --static exclude each other"),
+        ("run isostatic --static --events e.csv", "--events and --static exclude each other"),
+        ("curve isostatic --time-step 0.01", "Unrecognized arguments: --time-step 0.01"),
+        ("render isostatic --output a.png --deformed", "--deformed works only together with --static"),
+        ("render isostatic --output a.png --at 1 --until-rest", "--at and --until-rest exclude each other"),
+        ("render isostatic --output a.png --static --at 1", "--at and --static exclude each other"),
+        ("render isostatic --output a.gif --static", "--static and .gif exclude each other"),
     ],
 )
 def test_no_option_is_dropped_in_silence(capsys: pytest.CaptureFixture[str], command: str, said: str) -> None:
     assert main(command.split()) == 2
     assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("variable", ["PINJOINT_DATA", "PINJOINT_CONFIG"])
+def test_a_variable_that_names_no_folder_is_refused(variable: str) -> None:
+    found = pinjoint("run", "isostatic", **{variable: __file__})
+    assert found.returncode == 2
+    assert found.stderr == f"pinjoint: {variable} is '{__file__}'; set it to a folder, or leave it out.\n"
 
 
 def test_a_model_without_rods_has_nothing_to_displace(
@@ -272,7 +297,7 @@ def test_no_command_writes_where_it_cannot(command: str, capsys: pytest.CaptureF
     "command",
     [
         "run {model} --static --output {file}",
-        "run {model} --static --events {file}",
+        "run {model} --events {file}",
         "verify {model} --theory-only --output {file}",
         "render {model} --output {file}",
         "shake {model} {record} --output {file}",
@@ -306,7 +331,7 @@ def test_no_command_replaces_what_it_reads(
 
 def test_two_results_do_not_go_into_one_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     both = str(tmp_path / "result.csv")
-    assert main(["run", "isostatic", "--static", "--output", both, "--events", both]) == 2
+    assert main(["run", "isostatic", "--output", both, "--events", both]) == 2
     assert "choose another file" in capsys.readouterr().err
 
 

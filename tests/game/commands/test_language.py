@@ -9,6 +9,7 @@ import pytest
 from pinjoint import __main__ as program
 from pinjoint.commands import language as choice
 from pinjoint.components.language import language
+from pinjoint.components.mistake import Mistake
 from pinjoint.documents.preferences import preferred, remember
 
 OF_SYSTEM = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")
@@ -66,6 +67,12 @@ def test_the_choice_of_the_person_goes_before_the_system_and_what_is_asked_befor
     assert language() == "pt"
     assert choice.speak_as_asked(["--language", "en", "run", "x"]) == ["run", "x"]
     assert language() == "en" == choice.asked_language()
+
+
+def test_a_variable_that_names_no_language_is_refused(person):
+    person.setenv(choice.VARIABLE, "xx")
+    with pytest.raises(Mistake, match="PINJOINT_LANGUAGE is 'xx'; set it to en, pt, or leave it out"):
+        choice.speak_as_asked([])
 
 
 @pytest.mark.parametrize("kept", ['"xx"', "7", "null", '["pt"]'])

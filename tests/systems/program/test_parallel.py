@@ -12,14 +12,14 @@ import pytest
 from pinjoint import Session
 from pinjoint.commands.arguments import UsageError
 from pinjoint.commands.options import use_cores_as_asked
+from pinjoint.components.mistake import Mistake
 from pinjoint.documents import models
-from pinjoint.systems.base import CORES
+from pinjoint.systems.base import CORES, cores
 from pinjoint.systems.edit.pull import Hand
 from pinjoint.systems.program import blocks as layout
 from pinjoint.systems.program import reordered as in_blocks
 from pinjoint.systems.program import writer
 from pinjoint.systems.program.blocks import Layout
-from pinjoint.systems.program.reordered import cores
 from tests.benchmarks.models import lattice
 from tests.reference import bits
 from tests.reference.models import model, particle, rod
@@ -193,3 +193,8 @@ def test_the_command_line_says_how_many_cores(monkeypatch: pytest.MonkeyPatch) -
     assert cores() == 1
     with pytest.raises(UsageError, match="0 is not a whole number of at least 1"):
         use_cores_as_asked(["run", "--cores=0"])
+    monkeypatch.setenv(CORES, "abc")
+    with pytest.raises(
+        Mistake, match="PINJOINT_CORES is 'abc'; set it to a whole number of at least 1, or leave it out"
+    ):
+        use_cores_as_asked(["run"])
