@@ -14,7 +14,7 @@ from pinjoint.commands.progress import Progress, follow
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
-from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.numeric_range import beyond
 from pinjoint.components.settings import INTEGRATORS
 from pinjoint.components.theory import EXACT, THEORIES
 from pinjoint.components.wording import missing
@@ -104,7 +104,7 @@ def _prepare(model: Model, options: argparse.Namespace, *progress: Progress) -> 
     tell(missing_mods(model))  # which would change the result
     for override in changes(options):
         apply_override(model, override)
-    if problem := incomputable(model):
+    if problem := beyond(model):
         raise ModelError(f"{options.model}: {problem}")
 
 
