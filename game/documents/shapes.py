@@ -89,7 +89,7 @@ class Shapes:
             return ()
         if self._critical[0] != newest:
             self._rest = newest, elapsed + (self._rest[1] if self._rest[0] == newest else 0.0)
-            if self._rest[1] > REST and (rods.axial_force < 0.0).any():
+            if self._rest[1] > REST:  # before a run begins, whose first frame it would hold up
                 self._critical = newest, _critical_compression(model)
         if len(self._critical[1]) != rods.count:
             return ()

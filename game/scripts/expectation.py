@@ -6,6 +6,7 @@ import math
 import operator
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from pinjoint.components.field import ENDS
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import english, listed, marked
 from pinjoint.components.mistake import NotFound, WrongValue
+from pinjoint.components.model import Model
 from pinjoint.components.view import View
 from pinjoint.components.wording import cut, missing, quoted
 from pinjoint.paths import PathError, locate, locate_one, readable
@@ -104,7 +106,9 @@ def read(session: Any, path: str) -> Any:
     if head == "displacement_method":
         return _of_displacement_method(session, rest)
     if head == "statics":
-        return _one_of(_STATICS, rest, "quantities of statics")(session)
+        assessed = {name: partial(of, session) for name, of in _ASSESSED.items()}
+        of_model = {name: partial(of, session.model) for name, of in STATICS.items()}
+        return _one_of(assessed | of_model, rest, "quantities of statics")()
     if head == "view":
         return _one_of(_seen(session.view), rest, "parts of the view")
     if head == "count":
@@ -144,36 +148,38 @@ OVER_ALL: dict[str, Callable[[Sequence[float]], float]] = {  # of what a path wi
 }
 
 
-def _frequency(session: Any) -> float:
+def _frequency(model: Model) -> float:
     """The lowest natural frequency (Hz); NaN if nothing can vibrate."""
     from pinjoint.systems.statics.vibration import Vibrations  # scipy
 
-    hertz = Vibrations.of(session.model).hertz
+    hertz = Vibrations.of(model).hertz
     return float(hertz[0]) if len(hertz) else math.nan
 
 
-def _buckling(session: Any) -> float:
+def _buckling(model: Model) -> float:
     """The lowest load factor of linear buckling; NaN if there is none, or only an upper bound."""
-    found = session.buckling(1)
+    from pinjoint.systems.statics.buckling import Buckling  # scipy
+
+    found = Buckling.of(model, 1)
     return float(found.factors[0]) if len(found.factors) and not found.coarse else math.nan
 
 
-def _first_yield(session: Any) -> float:
+def _first_yield(model: Model) -> float:
     """The load factor in first order at which something first yields, such as a plastic hinge; NaN if nothing can."""
-    steps = collapse_steps(session.model)
+    steps = collapse_steps(model)
     return float(steps.columns[0].values[0]) if steps is not None else math.nan
 
 
-def _collapse(session: Any) -> float:
+def _collapse(model: Model) -> float:
     """The collapse load factor by limit analysis."""
     from pinjoint.systems.statics.limit_analysis import LimitLoad  # scipy
 
-    return LimitLoad.of(session.model).factor
+    return LimitLoad.of(model).factor
 
 
-def _width(session: Any) -> float:
+def _width(model: Model) -> float:
     """How far the joints reach across the direction in which they reach farthest (m): 0 where they lie on one line."""
-    points = session.model.particles.position
+    points = model.particles.position
     if not len(points):
         return 0.0
     across = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2][-1]
@@ -189,15 +195,17 @@ def _in_equilibrium(session: Any) -> bool:
     return bool(shown)
 
 
-_STATICS: dict[str, Callable[[Any], Any]] = {
-    "degree": lambda session: session.document.assessment.indeterminacy.static,
-    "mechanisms": lambda session: session.document.assessment.indeterminacy.mechanisms,
-    "equilibrium": _in_equilibrium,
+STATICS: dict[str, Callable[[Model], float]] = {  # of a model, whatever its state
     "width": _width,
     "frequency": _frequency,
     "buckling": _buckling,
     "first_yield": _first_yield,
     "collapse": _collapse,
+}
+_ASSESSED: dict[str, Callable[[Any], Any]] = {  # by a session, until something changes
+    "degree": lambda session: session.document.assessment.indeterminacy.static,
+    "mechanisms": lambda session: session.document.assessment.indeterminacy.mechanisms,
+    "equilibrium": _in_equilibrium,
 }
 
 

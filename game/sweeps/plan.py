@@ -18,12 +18,14 @@ import numpy as np
 from pinjoint import __version__
 from pinjoint.commands.analysis import Analysis, State, reported
 from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.field import ENDS
 from pinjoint.components.language import english, joined, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.documents.open_documents import file_of
 from pinjoint.mods import load
 from pinjoint.paths import EVERY, PathError, apply_override, energy_named, locate
+from pinjoint.scripts.expectation import OVER_ALL, STATICS
 from pinjoint.sweeps.variation import FORMS, MOST_VARIANTS, SweepError, Value, Variation, read_variations
 
 FAILED = "failed"  # the status of a variant that could not be computed
@@ -34,18 +36,21 @@ Outcome = tuple[int, list[Record]]  # the number of a variant, and a record of e
 _OF_THE_RUN = ("residual", "collisions")
 _ANYWAY = ("time", "load_factor")  # columns that every result has
 _TABLES = ("particles", "rods")
-_SECTIONS = (*_TABLES, "energy")
-_BETWEEN = re.compile(
-    rf",(?=\s*(?:(?:{'|'.join(_SECTIONS)})\.|(?:{'|'.join((*_OF_THE_RUN, *_ANYWAY))})\s*(?:,|$)))"
+_SECTIONS = (*_TABLES, "energy", "statics")
+_A_NUMBER = rf"(?:(?:{'|'.join(OVER_ALL)})\s+)?(?:{'|'.join(_SECTIONS)})\."
+_BETWEEN = re.compile(rf",(?=\s*(?:{_A_NUMBER}|(?:{'|'.join((*_OF_THE_RUN, *_ANYWAY))})\s*(?:,|$)))")
+_FORM = marked(
+    "write it like rods.CD.axial_force, largest rods.*.strain, particles.C.displacement.y, energy.elastic or"
+    " statics.collapse"
 )
-_FORM = marked("write it like rods.CD.axial_force, rods.*.strain, particles.C.displacement.y or energy.elastic")
 
 
 @dataclass(frozen=True)
 class Measure:
     """One number of a state: the column it goes to, where it is found, what to call it, its unit.
 
-    keys: in the facts of a state; element: the name of that in whose row it is, "" if it is not of an element.
+    keys: in the facts of a state, or "statics" and what of STATICS. element: the name of that in whose row it is, "" if it
+    is not of an element. over: by which of OVER_ALL its numbers, or those of EVERY element, become one.
     """
 
     column: str
@@ -54,15 +59,21 @@ class Measure:
     axis: int | None
     title: str
     unit: str
+    over: str = ""
 
     def of(self, model: Model, found: State) -> Any:
         """Its value in the facts of a state of a model."""
-        value: Any = reduce(getitem, self.keys, found)
-        if not self.element:
-            return value
-        row = model.tables[self.keys[0]][self.element].row
-        number = value.item(row) if self.axis is None else value.item(row, self.axis)
-        return None if number != number else number
+        section, name = self.keys[0], self.keys[-1]
+        value: Any = STATICS[name](model) if section == "statics" else reduce(getitem, self.keys, found)
+        if self.over:
+            rows = slice(None) if self.element == EVERY else model.tables[section][self.element].row
+            numbers = value[rows] if self.axis is None else value[rows, self.axis]
+            numbers = numbers[~np.isnan(numbers)].ravel().tolist()
+            value = float(OVER_ALL[self.over](numbers)) if numbers else None
+        elif self.element:
+            row = model.tables[section][self.element].row
+            value = value.item(row) if self.axis is None else value.item(row, self.axis)
+        return None if value != value else value
 
     @property
     def label(self) -> str:
@@ -179,15 +190,15 @@ def plan_of(
     if not variations:
         raise SweepError("Nothing is varied; {form}.", form=tr(FORMS))
     if drawn and samples is None:
-        raise SweepError("A distribution (~) needs a number of samples; add, for example, --samples 1000.")
+        raise SweepError("A distribution (~) needs a number of samples, such as 1000.")
     if not drawn and samples is not None:
         raise SweepError(
-            "--samples works only with a distribution; write PATH~normal(MEAN,DEVIATION), or leave out --samples."
+            "A number of samples works only with a distribution; write PATH~normal(MEAN,DEVIATION), or leave it out."
         )
     if samples is not None and samples < 1:
-        raise SweepError("--samples {samples}: draw at least 1.", samples=samples)
+        raise SweepError("{samples} samples: draw at least 1.", samples=samples)
     if seed < 0:
-        raise SweepError("--seed {seed}: write a whole number of at least 0.", seed=seed)
+        raise SweepError("The seed is {seed}; write a whole number of at least 0.", seed=seed)
     plan = Plan(
         file_of(source).name,
         document,
@@ -219,20 +230,26 @@ def _read_measures(model: Model, texts: Iterable[str]) -> tuple[Measure, ...]:
         for path in _BETWEEN.split(text):
             measures |= {measure.column: measure for measure in _measured(model, path.strip())}
     if not measures:
-        raise SweepError("Nothing is measured; add --measure: {form}.", form=tr(_FORM))
+        raise SweepError("Nothing is measured; {form}.", form=tr(_FORM))
     return tuple(measures.values())
 
 
-def _measured(model: Model, path: str) -> list[Measure]:
+def _measured(model: Model, text: str) -> list[Measure]:
+    word, _, of_all = text.partition(" ")
+    over, path = (word, of_all.strip()) if word in OVER_ALL else ("", text)
     section, _, rest = path.partition(".")
     if path in _ANYWAY:
         return []
     if path in _OF_THE_RUN:
         return [Measure(path, (path,), "", None, path, "")]
-    if section not in _SECTIONS:
+    if section not in _SECTIONS or (over and section not in _TABLES):
         names = ", ".join(_OF_THE_RUN)
-        raise SweepError("--measure {path}: {form}, or one of {names}.", path=path, form=tr(_FORM), names=names)
+        raise SweepError("{path}: {form}, or one of {names}.", path=text, form=tr(_FORM), names=names)
     try:
+        if section == "statics":
+            if rest not in STATICS:
+                raise PathError("it is none of {names}.", names=", ".join(STATICS))
+            return [Measure(path, ("statics", rest), "", None, path, "")]
         if section == "energy":
             return [
                 Measure(path, ("energy", energy_named(rest)), "", None, f"{rest.replace('_', ' ')} energy", "J")
@@ -245,7 +262,20 @@ def _measured(model: Model, path: str) -> list[Measure]:
         if rest:
             raise PathError("'{rest}' does not belong to the quantity; {form}.", rest=rest, form=tr(_FORM))
     except PathError as error:
-        raise SweepError(joined([f"--measure {path}:", str(error)])) from None
+        raise SweepError(joined([f"{text}:", str(error)])) from None
+    field, key = target.field, f"{section}.{target.element or EVERY}.{target.key}"
+    if over:
+        if field.shape and field.axes != ENDS and not target.axis:
+            raise SweepError(
+                "{path}: name one component, such as {key}.{axis}.",
+                path=text,
+                key=target.key,
+                axis=field.axes[0],
+            )
+        column = f"{over} {key}" + (f".{target.axis}" if target.axis else "")
+        axis = field.axes.index(target.axis) if target.axis else None
+        keys = (section, field.name)
+        return [Measure(column, keys, target.element or EVERY, axis, column, field.unit_of(target.axis), over)]
     elements = target.table.names if target.element == EVERY else [target.element]
     return [
         Measure(

@@ -58,7 +58,7 @@ def sweep(
     load_all(mods)
     plan = plan_of(source, vary, measure, analysis, overrides, samples, seed)
     if workers is not None and workers < 1:
-        raise SweepError("--workers {workers}: use at least 1.", workers=workers)
+        raise SweepError("{workers} workers: use at least 1.", workers=workers)
     path = None if output is None else Path(output)
     if path is not None:
         check_output(path)

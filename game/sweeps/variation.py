@@ -120,7 +120,7 @@ def _read(model: Model, text: str) -> Variation:
             return _random(target, rest[1:])
         raise PathError("it has no values; {form}.", form=tr(FORMS))
     except PathError as error:
-        raise SweepError(joined([f"--vary {cut(text)}:", str(error)])) from None
+        raise SweepError(joined([f"{cut(text)}:", str(error)])) from None
 
 
 def _label(target: Target, element: str) -> str:

@@ -148,6 +148,22 @@ def test_one_measure_may_be_a_text() -> None:
     assert one[AB].tolist() == listed[AB].tolist()
 
 
+def test_one_number_of_all_elements_and_of_the_statics_of_a_variant() -> None:
+    """As an expectation of the same model reads them, whatever is shown."""
+    asked = "largest rods.*.bending_moment, min rods.*.axial_force,sum particles.*.reaction.y, statics.collapse"
+    first_order = Analysis(load_factors=(0.5,), theory="first-order")
+    factors = [30.0, 60.0]
+    found = sweep("portal_collapse", ["rods.*.plastic_moment=30,60"], asked, first_order)
+    for row, moment in zip(found, factors, strict=True):
+        session = Session.open("portal_collapse")
+        session.rods.plastic_moment = moment
+        session.settings.load_steps = (0.5,)
+        session.press("q")
+        for path in asked.split(","):
+            session.expect(f"{path.strip()} ≈ {row[path.strip()]} ± 1e-9")
+    assert found["statics.collapse"][1] == pytest.approx(2.0 * found["statics.collapse"][0])
+
+
 def test_results_have_rows() -> None:
     found = sweep("isostatic", {"rods.CA.stiffness": [1e5, 2e5]}, ["rods.AB.axial_force"])
     assert len(found) == 2
@@ -420,7 +436,7 @@ VARY = {
 def test_variations_that_make_no_sense(text: str, reason: str) -> None:
     with pytest.raises(SweepError) as caught:
         sweep(MODEL, [text], MEASURES, STATIC)
-    assert str(caught.value).startswith(f"--vary {text}: ")
+    assert str(caught.value).startswith(f"{text}: ")
     assert reason in str(caught.value)
 
 
@@ -429,6 +445,9 @@ MEASURE = {
     "rods.CA.stiffness": "there is no key 'stiffness'; choose one of axial_force, length",
     "rods.CA.strain.x": "strain has no parts, such as 'x'; write strain.",
     "energy.heat": "there is no energy 'heat'; choose one of kinetic, elastic",
+    "statics.heat": "it is none of width, frequency, buckling, first_yield, collapse",
+    "largest particles.*.displacement": "name one component, such as displacement.x",
+    "largest energy.kinetic": "write it like rods.CD.axial_force",
     "grids.1.spacing": "write it like rods.CD.axial_force",
     "nonsense": "write it like rods.CD.axial_force",
 }
@@ -444,7 +463,7 @@ def test_measures_that_do_not_exist(text: str, reason: str) -> None:
 @pytest.mark.parametrize("values", ["=1,2", "~normal(1,1)"])
 def test_all_of_none_cannot_be_varied(values: str) -> None:
     """The discs of collision_ii have no rods."""
-    with pytest.raises(SweepError, match=r"--vary rods\.\*\.stiffness.*: the model has no rods"):
+    with pytest.raises(SweepError, match=r"^rods\.\*\.stiffness.*: the model has no rods"):
         sweep("collision_ii", [f"rods.*.stiffness{values}"], ["residual"], samples=2)
 
 
@@ -457,11 +476,11 @@ SWEEPS = {
     "would overwrite rods.CA.stiffness": {"vary": [f"{STIFFNESS}=1,2", "rods.*.stiffness=3,4"]},
     "would overwrite particles.B.force.y": {"vary": [FORCE_Y, "particles.*.force.y=1"]},
     "needs a number of samples": {"vary": [DRAWN]},
-    "--samples works only with a distribution": {"samples": 5},
-    "--samples 0: draw at least 1": {"vary": [DRAWN], "samples": 0},
-    "--seed -1": {"seed": -1},
+    "A number of samples works only with a distribution": {"samples": 5},
+    "0 samples: draw at least 1": {"vary": [DRAWN], "samples": 0},
+    "The seed is -1": {"seed": -1},
     "These are 100000000 variants": {"vary": [f"rods.{rod}.stiffness=1:2:10000" for rod in ("AB", "BC")]},
-    "--workers 0: use at least 1": {"workers": 0},
+    "0 workers: use at least 1": {"workers": 0},
     "results.txt: choose a file that ends with one of .csv, .parquet": {"output": "results.txt"},
     "its folder is missing": {"output": "no/such/folder/results.csv"},
 }
