@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pinjoint.components.field import Vector
 
-DEFAULT_SCALE = 100.0  # points per metre at the default zoom
+_DEFAULT_SCALE = 100.0  # points per metre at the default zoom
 LEAST_MARGIN = 0.2  # of the room, where a margin would take more
 SMALLEST_SCALE, LARGEST_SCALE = 1e-6, 1e9
 
@@ -69,7 +69,7 @@ class Camera:
     """Looks at `centre` (m) with `scale` pixels per metre through `viewport`."""
 
     centre: Vector = (0.0, 0.0)
-    scale: float = DEFAULT_SCALE
+    scale: float = _DEFAULT_SCALE
     viewport: Viewport = field(default_factory=Viewport)
 
     @property
@@ -119,9 +119,9 @@ class Camera:
         room = within or self.viewport
         points = points[np.isfinite(points).all(axis=1)]
         if len(points) == 0:
-            self.centre, self.scale = (0.0, 0.0), DEFAULT_SCALE * unit
+            self.centre, self.scale = (0.0, 0.0), _DEFAULT_SCALE * unit
         else:
-            self._fit(points, margin * unit, room, (4.0 if len(points) > 1 else 1.0) * DEFAULT_SCALE * unit)
+            self._fit(points, margin * unit, room, (4.0 if len(points) > 1 else 1.0) * _DEFAULT_SCALE * unit)
         (x, y), (there_x, there_y) = self.middle, room.middle
         self.pan((there_x - x, there_y - y))
 

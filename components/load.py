@@ -53,7 +53,7 @@ class HistoryKind:
 HISTORIES: dict[str, HistoryKind] = EXTENSIONS.histories  # ours below, then those of mods
 
 
-def check_history(value: Any, where: str) -> History:
+def _check_history(value: Any, where: str) -> History:
     """A history with all its parameters, or FieldError."""
     if not isinstance(value, Mapping) or not isinstance(value.get("kind"), str):
         raise FieldError(
@@ -132,7 +132,7 @@ HISTORIES["ramp"] = HistoryKind(
     check=_check_ramp,
 )
 
-CONSTANT = check_history({"kind": "constant"}, "load")
+CONSTANT = _check_history({"kind": "constant"}, "load")
 
 
 # Of the loads that act together, which combinations multiply by a factor.
@@ -170,7 +170,7 @@ class Load(Handle):
         dtype=object,
         default=CONSTANT,
         doc="How the load changes in time: its factor multiplies force and moment.",
-        checker=check_history,
+        checker=_check_history,
     )
     case: Field[str] = _CASE()
     settlement: Field[Vector] = Field(

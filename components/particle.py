@@ -15,6 +15,7 @@ from pinjoint.components.language import joined
 from pinjoint.components.table import Store, Table, flags
 
 DEFAULT_MASS = 1.0  # kg, of a particle without rods
+AXES = ("x", "y", "rotation")  # in which a particle moves
 
 
 class Particle(Handle):

@@ -16,8 +16,6 @@ from pinjoint.components.language import tr
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.wording import missing
 
-_SMALLEST_CAPACITY = 8
-
 
 class Store(Protocol):
     """A world, as its tables and handles know it."""
@@ -82,7 +80,7 @@ class Table(Generic[H]):
         self.state: list[str] = []  # names of the columns that time makes
         self.count = 0
         self.structure = 0  # revision of the last creation or deletion
-        self.entity: NDArray[np.int64] = np.empty(1 if kind.single else _SMALLEST_CAPACITY, dtype=np.int64)
+        self.entity: NDArray[np.int64] = np.empty(1 if kind.single else 8, dtype=np.int64)
         self.handles: list[H] = []
         self._columns: dict[str, Column] = {}
         self._read: dict[str, tuple[int, Column]] = {}  # with the revision: a picture asks for some 200

@@ -30,11 +30,10 @@ BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 ABOVE = 102.0  # points above members that bend, for a legend in two rows and diagrams
 COVERED = 0.75  # of this margin, what arrows and the legend may take
-COLUMN = 310.0  # points: the width of panels, boxes to type into, or a lesson, beside a model
+_COLUMN = 310.0  # points: the width of panels, boxes to type into, or a lesson, beside a model
 LEAST_MODEL = 230.0  # points that the model keeps beside boxes, or they take all
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
 TABLE_SHARE = 0.36  # of a window's height, that a table of results takes below a model at most
-LEAST_FOR_LESSON = 860.0  # points of a window's width from which on a lesson is a column, else a strip below
 STRIP, STRIP_SHARE = 230.0, 0.4  # points, and share of the height at most, of this strip
 
 
@@ -51,8 +50,8 @@ def magnified(height: float, display: float, chosen: float) -> float:
 
 def lesson_share(width: int, height: int, unit: float) -> tuple[int, int]:
     """The pixels that a lesson takes of a window: of its width, at the right, or of its height, at the bottom."""
-    if width >= LEAST_FOR_LESSON * unit:
-        return round(COLUMN * unit), 0
+    if width >= 860.0 * unit:  # a column; else a strip below
+        return round(_COLUMN * unit), 0
     return 0, round(min(STRIP_SHARE * height, STRIP * unit))
 
 
@@ -480,9 +479,9 @@ class View:
     def beside(self, *, at_left: bool) -> Viewport | None:
         """Where boxes to type into stand beside the model; None where they would leave too little of it."""
         c, u = self.canvas, self.pixel_ratio
-        if c.width < (COLUMN + LEAST_MODEL) * u:
+        if c.width < (_COLUMN + LEAST_MODEL) * u:
             return None
-        width = round(COLUMN * u)
+        width = round(_COLUMN * u)
         return replace(c, left=c.left if at_left else c.left + c.width - width, width=width)
 
     def covers(self, pixel: Vector) -> bool:
@@ -515,7 +514,7 @@ class View:
         """Where panels stand: in a column at the right, if that is too narrow in the lower half, else anywhere."""
         c, u = self.canvas, self.pixel_ratio
         if c.width >= LEAST_BESIDE * u:
-            width = round(COLUMN * u)
+            width = round(_COLUMN * u)
             return replace(c, left=c.left + c.width - width, width=width)
         if c.height >= LEAST_ABOVE * u:
             return Viewport(c.left, c.top + c.height // 2, c.width, c.height - c.height // 2)

@@ -24,7 +24,6 @@ from pinjoint.components.wording import as_said, cut, missing, quoted
 
 H = TypeVar("H", bound=Handle)
 
-_NO_ROWS = np.zeros(0, dtype=np.intp)
 _world_numbers = itertools.count(1)
 
 
@@ -436,7 +435,7 @@ class World:
             with self._edit(tr("delete")):
                 self.execute(Delete(tuple(doomed)))
                 for table in self.tables.values():
-                    table.kind.after_change(table, _NO_ROWS, ())
+                    table.kind.after_change(table, np.zeros(0, dtype=np.intp), ())
 
     def execute(self, command: Command) -> None:
         """Apply a command and report its inverse to the log; of a group that raises, nothing happened."""

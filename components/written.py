@@ -21,7 +21,6 @@ _GIVEN_DIGITS = 6  # of a number that a person set, without zeros at its end
 MORE_DIGITS = 2  # that a sum may take so that it adds up as written
 ROUNDING = 1e-9  # of the largest of its kind: a result below is written as 0
 
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what a formula of a spreadsheet begins with
 _LENGTH, _PER_METRE = CM
 _PLAIN = range(-4, 7)  # powers of ten within which numbers are written out
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -39,7 +38,7 @@ def as_csv(rows: Iterable[Iterable[Any]], *, local: bool = False, between: str =
     """
 
     def cell(value: Any) -> Any:
-        if isinstance(value, str) and value.lstrip("'").startswith(_FORMULA):
+        if isinstance(value, str) and value.lstrip("'").startswith(("=", "+", "-", "@", "\t", "\r")):
             return f"'{value}"
         if local and isinstance(value, float):
             return decimals(repr(value))
@@ -160,9 +159,9 @@ def total(terms: Iterable[float]) -> str:
     return decimals(" ".join([f"{'−' * (shown[0] < 0.0)}{first}", *signed, sign, result]))
 
 
-def strain(value: float, *, nothing: float = 0.0) -> str:
+def strain(value: float) -> str:
     """Elongation per length."""
-    return _with_unit(number(1000.0 * value, nothing=1000.0 * nothing), "‰")
+    return _with_unit(number(1000.0 * value), "‰")
 
 
 def share(value: float, digits: int = 3) -> str:

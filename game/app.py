@@ -49,13 +49,10 @@ from pinjoint.systems.render.picture import symbol_at
 from pinjoint.systems.render.pygame_render import PygameRender
 from pinjoint.systems.render.pygame_sound import PygameSound
 
-FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points
 FRAME = (16, 80)  # points that the frame of a window and the bars of a desktop take at least beside it
-SMALLEST_SIZE = (320, 240)
-FAULT_SIZE = 20.0  # points, of the letters that say why there is no picture
+_SMALLEST_SIZE = (320, 240)
 SELDOM = 1_000_000  # new objects, after which the garbage collector runs even while a person works
-MANY_NEW = 20_000  # new objects, from which on it runs while nothing happens
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")  # where Linux says what to draw on
 ICON = files("pinjoint.assets") / "icons" / "pinjoint-64.png"
 UNSEEN = ("offscreen", "dummy")  # drivers of SDL without a visible window
@@ -138,11 +135,11 @@ def place_on(
     """
     (width, height), first = displays[0], magnified(float(displays[0][1]), float(displays[0][1]), 1.0)
     beside = FRAME if seen else (0, 0)
-    most = max(width - beside[0], SMALLEST_SIZE[0]), max(height - beside[1], SMALLEST_SIZE[1])
+    most = max(width - beside[0], _SMALLEST_SIZE[0]), max(height - beside[1], _SMALLEST_SIZE[1])
     if place is None:
         return (min(round(first * FIRST_SIZE[0]), most[0]), min(round(first * FIRST_SIZE[1]), most[1])), None
     left, top, wide, high = place
-    wide, high = max(wide, SMALLEST_SIZE[0]), max(high, SMALLEST_SIZE[1])
+    wide, high = max(wide, _SMALLEST_SIZE[0]), max(high, _SMALLEST_SIZE[1])
     if len(displays) > 1:
         across, down = sum(w for w, _ in displays), sum(h for _, h in displays)
         there = -across < left < across and -down < top < down
@@ -178,7 +175,7 @@ class App:
             self.window.set_icon(pygame.image.load(BytesIO(ICON.read_bytes()), ICON.name))
         except pygame.error as error:
             raise NoDisplay(str(error)) from None
-        self.window.minimum_size = SMALLEST_SIZE
+        self.window.minimum_size = _SMALLEST_SIZE
         pygame.key.set_repeat(400, 40)
         self.input = PygameInput()
         raster = preparation.raster if preparation else load_raster
@@ -250,7 +247,7 @@ class App:
     def next_frame(self, *, wait: bool = True) -> Frame:
         """A frame when it is time for it, or at once."""
         if wait:
-            self._clock.tick(FRAME_RATE)
+            self._clock.tick(60)
         now, before = time.perf_counter(), self._before
         self._before = now
         return self.frame(now - before)
@@ -276,7 +273,7 @@ class App:
 
     def _draw_plainly(self) -> None:
         """Show why there is no picture, with as little as that needs."""
-        surface, edge = self.render.surface, round(FAULT_SIZE * self.session.view.pixel_ratio)
+        surface, edge = self.render.surface, round(20.0 * self.session.view.pixel_ratio)
         surface.fill("black")
         self.render.shown, self.render.drawn = None, True
         with suppress(pygame.error):
@@ -343,7 +340,7 @@ class App:
             gc.unfreeze()
             gc.collect()
             gc.freeze()
-        elif gc.get_count()[0] > MANY_NEW:
+        elif gc.get_count()[0] > 20_000:  # new objects
             gc.collect(0)
 
     def _choices(self) -> dict[str, str | bool]:

@@ -60,14 +60,14 @@ SCALES = (1.0, 1e4, 1e-4)  # by which a person may zoom
 PATIENCE = 30.0  # s that some steps of the small model may take
 NEARBY = 1e-5  # of a distance, over which the slope of a potential is taken
 NEAR = 0.8  # of the letters, from which on a name is a misspelt one
-NAMING = {  # what declares names, and names of what
+_NAMING = {  # what declares names, and names of what
     **dict.fromkeys(("scenes", "sources", "targets"), marked("scenes")),
     **dict.fromkeys(("before", "after", "systems"), marked("systems")),
 }
-UNDECLARED = marked("{name}: it changed {column}, which it does not declare in writes or adds.")
-ASKED = marked("{name}: needs(model) changed {column}; it must not change the model.")
-NOT_REPEATED = marked("{name}: run twice, it gives another {column}; nothing may depend on chance.")
-NOT_IN_ORDER = marked(
+_UNDECLARED = marked("{name}: it changed {column}, which it does not declare in writes or adds.")
+_ASKED = marked("{name}: needs(model) changed {column}; it must not change the model.")
+_NOT_REPEATED = marked("{name}: run twice, it gives another {column}; nothing may depend on chance.")
+_NOT_IN_ORDER = marked(
     "{name}: registered in another order, it gives another {column}; the order must not matter."
 )
 
@@ -197,9 +197,9 @@ def _check(make: Callable[[], System], source: Source) -> bool:
             column for other in all_systems() if isinstance(other, StepSystem) for column in other.writes
         }
     after = _columns_of(first)
-    _compare(made.name, _columns_of(_model(source)), after, UNDECLARED, allowed)
+    _compare(made.name, _columns_of(_model(source)), after, _UNDECLARED, allowed)
     _check_finite(made.name, first)
-    for backwards, refusal in ((False, NOT_REPEATED), (True, NOT_IN_ORDER)):
+    for backwards, refusal in ((False, _NOT_REPEATED), (True, _NOT_IN_ORDER)):
         again = _run(make(), source, backwards=backwards)
         if again is None:
             raise SystemCheckError(
@@ -219,7 +219,7 @@ def _run(system: System, source: Source, *, backwards: bool = False) -> Model | 
     model = _model(source)
     if not isinstance(system, Integrator):
         before, needed = _columns_of(model), system.needs(model)
-        _compare(system.name, before, _columns_of(model), ASKED)
+        _compare(system.name, before, _columns_of(model), _ASKED)
         if not needed:
             return None
     if not isinstance(system, StepSystem):
@@ -259,7 +259,7 @@ def _run_frames(system: System, session: Session) -> None:
         except Exception as error:
             told = {"name": system.name, "kind": type(error).__name__, "error": error}
             raise SystemCheckError("{name} raises {kind}: {error}", **told) from error
-    _compare(system.name, before, _columns_of(session.model), UNDECLARED, {*system.writes, *system.adds})
+    _compare(system.name, before, _columns_of(session.model), _UNDECLARED, {*system.writes, *system.adds})
 
 
 def _check_pairs(law: Law, model: Model) -> None:
@@ -454,7 +454,7 @@ class Trial:
         known = {"scenes": [scene.name for scene in all_scenes()], "systems": [*plan.left_out, *active]}
         families = {name.partition(".")[0] for name in known["systems"]}
         for made in declared:
-            for attribute, group in NAMING.items():
+            for attribute, group in _NAMING.items():
                 for name in getattr(made, attribute, None) or ():
                     of_others = attribute in ("before", "after") and name.partition(".")[0] not in families
                     if matching(known[group], name) or (of_others and not nearest(name, known[group], NEAR)):

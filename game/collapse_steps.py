@@ -19,7 +19,6 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
 
 MOST = 100  # rods up to which the way is followed without being asked for
 BEYOND = 1e-3  # of the collapse load, by which load steps go on to find it
-TOGETHER = 1e-9  # of a load factor, within which events are one step
 _SAID = {
     "hinge": marked("hinge at {particle}, {rod}"),
     "yield": marked("{rod} yields"),
@@ -49,7 +48,7 @@ def collapse_steps(model: Model, found: LimitLoad | None = None) -> Table | None
     for event in settle(model, (1.0 + BEYOND) * limit, FIRST_ORDER, start).events:
         if event.kind not in _SAID and event.kind not in _LAST:
             continue
-        if not told or event.load_factor > told[-1][0] * (1.0 + TOGETHER):
+        if not told or event.load_factor > told[-1][0] * (1.0 + 1e-9):  # else of one step
             told.append((event.load_factor, []))
         if event.kind in _LAST:
             said = [tr(_LAST[event.kind])]

@@ -45,7 +45,7 @@ START = "import sys; sys.path[:] = sys.argv[1:]; from pinjoint.elsewhere import 
 INTERVAL = 0.05  # s between two looks
 # What edits and steps need, which takes several frames to import.
 _SYSTEMS = ("pinjoint.systems.plasticity.kernels", "pinjoint.systems.statics.buckling")
-LIBRARIES = (*_SYSTEMS, "scipy.spatial", "scipy.sparse.linalg")
+_LIBRARIES = (*_SYSTEMS, "scipy.spatial", "scipy.sparse.linalg")
 _ENDING = 0.5  # s that what a thread is at may take before the window goes without it
 
 _HOME = Path(__file__).parent
@@ -123,7 +123,7 @@ class Elsewhere:
 
     def _run(self) -> None:
         read_sources([integrator for integrator in INTEGRATORS.values() if integrator.mod is None])
-        libraries = list(LIBRARIES)
+        libraries = list(_LIBRARIES)
         while not self._closed.wait(INTERVAL):
             self._look()
             modules = [work.module for work in self.needed if work.module is not None]

@@ -29,8 +29,6 @@ from pinjoint.systems.statics.equations import largest
 from pinjoint.tables import Table
 
 _BESIDE_IT, _ABOVE, _BELOW = 56.0, 46.0, 62.0  # pixels around a structure, for supports, loads and diagrams
-_MOMENTS = 12.0  # pixels more beside it, for the values of moments
-_SHORTER = 1.3  # times the largest force: that of the longest arrow
 _DIAGRAM = 30.0  # pixels of the largest axial force
 _SPARE = 70.0  # pixels more below a structure and half as many above it, where values need them
 _PART = 0.42  # of the height of a page, that of figures made larger
@@ -121,7 +119,7 @@ def figure(
         view.camera = _camera(model, unit, *room, measured=measured)
         if bare and frame:
             model.settings.diagram_scale = max(_TALL * unit / diagram_room(view.camera.viewport, unit), 1.0)
-        view.largest_force = _SHORTER * largest_force(model, view)
+        view.largest_force = 1.3 * largest_force(model, view)  # so much shorter is the longest arrow
         if moved:
             scale = model.settings.displacement_scale = _well_seen(model, view)
             said = joined([caption, tr("displacements × {scale}", scale=written.given(scale))], ", ")
@@ -141,7 +139,7 @@ def _camera(model: Model, unit: float, across: float, tall: float, spare: float,
     """Where a structure stands in a room of so many points across, and tall at most, with spare pixels around it."""
     wide, high = shape(model)
     right, under = (unit * _RIGHT, unit * _UNDER) if measured else (0.0, 0.0)
-    beside = unit * (_BESIDE_IT + _MOMENTS * is_frame(model))
+    beside = unit * (_BESIDE_IT + 12.0 * is_frame(model))  # px more for the values of moments
     above = unit * (_ABOVE + _REACTIONS * measured + 0.5 * spare)
     below = unit * (_BELOW + 0.5 * _REACTIONS * measured + spare)
     width = across / PIXEL - right

@@ -18,7 +18,6 @@ from types import FrameType
 CLOSING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 PATIENCE = 1.5  # s that what is in progress may take to end before it is cut off
 AGAIN = 0.02  # s after which what could not be raised is tried again
-_LEFT_OVER = 2.0  # s that threads may take to end after the program
 
 
 @contextmanager
@@ -131,7 +130,7 @@ def ended_with(status: int) -> int:
     def end() -> None:
         from pinjoint.components.language import listed, tr  # this module is loaded before all that takes time
 
-        time.sleep(_LEFT_OVER)
+        time.sleep(2.0)  # threads may take as long to end after the program
         said = tr("These threads did not end and were left: {threads}.", threads=listed(left()))
         print(f"pinjoint: {said}", file=sys.stderr, flush=True)
         os._exit(status)

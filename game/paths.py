@@ -38,9 +38,6 @@ ENERGIES = {  # that are reported, in this order, and what people call them
     "imbalance": marked("imbalance"),
 }
 
-_SET_BY_TIME = ("clock",)  # tables
-_FLAGS = {"true": True, "false": False}
-
 
 class PathError(Mistake, LookupError):
     """A path that names nothing or cannot have a value; the message gives the reason and the remedy."""
@@ -93,7 +90,7 @@ Keys = Callable[[Table[Any]], Mapping[str, Field[Any]]]  # the facts of a table 
 
 def settable(table: Table[Any]) -> Mapping[str, Field[Any]]:
     """The facts that a person can set, by the keys of model files."""
-    fields = () if table.name in _SET_BY_TIME else table.fields_in(*SAVED)
+    fields = () if table.name in ("clock",) else table.fields_in(*SAVED)
     return {field.name if field.component else field.key: field for field in fields if field.references is None}
 
 
@@ -248,7 +245,7 @@ def _scalar(field: Field[Any], text: str) -> Any:
     if text.lower() in ("null", "none"):
         return None
     if field.dtype is bool:
-        return _FLAGS.get(text.lower(), text)
+        return {"true": True, "false": False}.get(text.lower(), text)
     try:
         return msgspec.json.decode(text) if field.dtype is object else field.dtype(text)
     except (ValueError, RecursionError):

@@ -41,8 +41,7 @@ from pinjoint.systems.program.writer import kind_of
 from pinjoint.systems.render.backends.raster import RASTER, Raster, load_raster
 from pinjoint.systems.run.simulation import Simulation
 
-LONGEST_IMPACT = 2**20  # operations, about a second: a window waits half a minute to compile what takes longer
-BEGINNING = 1.5  # s in which the other process gets ready to compile
+_BEGINNING = 1.5  # s in which the other process gets ready to compile
 BY_AN_EDIT: Sequence[
     tuple[Set[str], str]
 ] = (  # systems that an edit brings, and which one they take the place of
@@ -179,7 +178,7 @@ class Preparation(System, Readiness):
         if (
             self._asked is not Compile.ALWAYS
             and is_live(simulation.model)
-            and impacts <= LONGEST_IMPACT
+            and impacts <= 2**20  # operations, about a second: others are worth half a minute's wait to compile
             and all(map(is_our_own, simulation.plan))
         ):
             jobs: list[Job] = [(PARTING.name,)] if parting > LONGEST_WORK else []
@@ -192,7 +191,7 @@ class Preparation(System, Readiness):
         since = min(self._waiting.setdefault(job, now) for job in left)
         works = (self._works[job] for job in left if job in self._works)
         modules = (work.module for work in works if work.module is not None and not work.module.is_compiled())
-        return Waiting(now - since, BEGINNING + sum(module.expected_seconds() for module in modules))
+        return Waiting(now - since, _BEGINNING + sum(module.expected_seconds() for module in modules))
 
     def _jobs(self, simulation: Simulation) -> list[Job]:
         """What a simulation runs with, and what parts its overlaps before, if that takes long."""

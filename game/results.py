@@ -33,7 +33,6 @@ from pinjoint.components.written import ROUNDING
 from pinjoint.tables import Column, Table, Words
 
 _KN, _KNM, _MRAD, _PERCENT = ("kN", 1.0), ("kN·m", 1.0), ("mrad", 1e3), ("%", 100.0)
-_ALL_NOTHING = 1e-3  # m, kN, kN·m, rad: numbers that are all smaller than the share ROUNDING of it are rounding
 
 
 @dataclass(frozen=True)
@@ -208,7 +207,7 @@ def _column(
 ) -> Column:
     """A column; size: of the largest number of its kind, beside which others are rounding."""
     unit, factor = shown
-    least = factor * max(size, _largest(values), _ALL_NOTHING)
+    least = factor * max(size, _largest(values), 1e-3)  # m, kN, kN·m, rad: if all are smaller, all is rounding
     return Column(title, unit, factor * values, key=key, alike=summed, summed=summed, least=least)
 
 

@@ -28,11 +28,9 @@ from pinjoint.systems.render.backends.paper import LAYOUTS, Block, Layout, as_pa
 from pinjoint.systems.statics.state import Start
 from pinjoint.tables import Column, Table
 
-_FLAT = 1.6  # times as wide as high: of such structures each figure has a row of its own
 _BESIDE = 20  # rods up to which their table stands beside figures
 _SHORT, _BEGUN = 24, 100.0  # rows of tables that pages do not part; points for the beginning of another
 BEFORE = 1e-6  # of the collapse load: a sheet of a structure that collapses shows it by so much less
-_LARGER = 1.2  # type in figures, that of reports being 1
 
 
 class NoSheet(Mistake, ValueError):
@@ -90,7 +88,7 @@ def contents(solved: Solved, layout: Layout, shapes: Sequence[Shape] = ()) -> li
     """What the sheet consists of, from the top to the bottom."""
     model, results = solved.model, solved.results
     wide, high = shape(model)
-    draw = partial(figure, layout, model, row=1 if wide > _FLAT * high else 2, unit=_LARGER, grows=True)
+    draw = partial(figure, layout, model, row=1 if wide > 1.6 * high else 2, unit=1.2, grows=True)
     theory = tr("Statics by first-order theory: equilibrium about the original shape.")
     if not model.first_order:
         theory = tr("Statics in exact geometry: equilibrium of the deformed shape.")

@@ -11,6 +11,7 @@ from pinjoint.commands.force_method import answer, forces, parsed
 from pinjoint.commands.options import model_of
 from pinjoint.commands.output import aligned
 from pinjoint.components.language import marked, tr
+from pinjoint.components.particle import AXES
 from pinjoint.methods import displacement_words
 from pinjoint.methods.displacements import DisplacementTables
 from pinjoint.systems.statics.counting import Count
@@ -38,7 +39,6 @@ def _data(tables: DisplacementTables) -> dict[str, Any]:
     """
     solution, rods = tables.solution, tables.model.rods
     particles, width = tables.model.particles.names, solution.members.shape[1] // 2
-    axes = ("x", "y", "rotation")[:width]
     return {
         "unknowns": [unknown.name for unknown in solution.unknowns],
         "unit": ["rad" if unknown.is_moment else "m" for unknown in solution.unknowns],
@@ -49,7 +49,7 @@ def _data(tables: DisplacementTables) -> dict[str, Any]:
         "force_method": Count.of(tables.model).degree,
         "members": {
             name: {
-                "directions": [f"{particles[end]}.{axis}" for end in ends for axis in axes],
+                "directions": [f"{particles[end]}.{axis}" for end in ends for axis in AXES[:width]],
                 "stiffness": matrix,
                 "fixed_end_forces": fast,
             }

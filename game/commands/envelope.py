@@ -13,14 +13,13 @@ from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
 from pinjoint.commands.output import Row, aligned, write_result
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
-from pinjoint.components.particle import supported
+from pinjoint.components.particle import AXES, supported
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.streams import tell
 
 _BOUNDS = ("least", "most")
 _UNITS = {"N": "kN", "V": "kN", "M": "kN·m"}
 _PARTS = {"reaction": ("kN", "kN", "kN·m"), "displacement": ("m", "m", "rad")}
-_AXES = ("x", "y", "rotation")
 
 
 def answer(options: Namespace, model: Model, analysis: Analysis) -> int:
@@ -83,7 +82,7 @@ def _rows(data: Mapping[str, Any]) -> Iterator[Row]:
         for part, units in _PARTS.items():
             for bound in _BOUNDS:
                 of_part = parts[part][bound], parts[part][f"{bound}_in"]
-                for axis, unit, value, combination in zip(_AXES, units, *of_part, strict=True):
+                for axis, unit, value, combination in zip(AXES, units, *of_part, strict=True):
                     yield "particle", name, f"{part}_{axis}", "", bound, value, unit, combination or ""
 
 
@@ -102,7 +101,7 @@ def _lines(data: Mapping[str, Any], supports: list[str], said: str) -> Iterator[
     table = [("", "", tr("least"), tr("in"), tr("most"), tr("in"))]
     for name in supports:
         for axis, unit, *cells in zip(
-            _AXES, _PARTS["reaction"], *data["particles"][name]["reaction"].values(), strict=True
+            AXES, _PARTS["reaction"], *data["particles"][name]["reaction"].values(), strict=True
         ):
             if cells[0] or cells[2]:
                 table.append((name, f"{axis} {unit}", *("" if cell is None else cell for cell in cells)))

@@ -42,7 +42,6 @@ from pinjoint.systems.render.theme import load_theme, theme_names
 
 _PICTURES = (".png", ".svg", ".pdf", ".gif", ".jpg", ".bmp")
 _CLEAR = (".png", ".svg", ".pdf")  # those that may be without a background
-_LIGHT = 128  # of 255: themes with a darker background are not made for white paper
 FRAME = 0.05  # s for which each picture is shown; viewers of GIFs slow down quicker ones
 LONGEST = 12.0  # s shown; a longer run to a time is shown faster, one until rest in part and at its end
 HELD = 1.5  # s for which the last picture stays
@@ -178,7 +177,7 @@ def _check_background(options: argparse.Namespace) -> None:
             ending=suffix,
             endings=", ".join(_CLEAR),
         )
-    if background == "white" and max(load_theme(options.theme).background[:3]) < _LIGHT:
+    if background == "white" and max(load_theme(options.theme).background[:3]) < 128:  # of 255
         raise UsageError(
             "--background white: the theme {theme} has light text, which cannot be read on white; choose a light theme.",
             theme=options.theme,

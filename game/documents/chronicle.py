@@ -20,7 +20,7 @@ from pinjoint.components.rod import can_hinge, can_yield, has_cables, has_struts
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.run.simulation import Simulation
 
-COLLAPSED = 4.0  # plastic strain over that of first yield, beyond which it is no overshoot if nothing resists
+_COLLAPSED = 4.0  # plastic strain over that of first yield, beyond which it is no overshoot if nothing resists
 LARGEST = 100  # rods up to which stability is looked at: a fraction of a millisecond
 MOST_NAMED = 3  # elements in a sentence
 FIRST_IMPACTS, LOOKED_THROUGH = 3, 64  # instants of impacts that are told one by one, among so many impacts
@@ -230,9 +230,9 @@ class Chronicle:
             return
         yielding = np.flatnonzero(rods.yielding) if can_yield(model) else np.empty(0, dtype=np.intp)
         limit = np.minimum(rods.tension_limit, rods.compression_limit) / rods.stiffness
-        worn = yielding[np.abs(rods.plastic_strain[yielding]) > COLLAPSED * limit[yielding]]
+        worn = yielding[np.abs(rods.plastic_strain[yielding]) > _COLLAPSED * limit[yielding]]
         hinges = np.argwhere(rods.hinge_yielding) if can_hinge(model) else np.empty((0, 2), dtype=np.intp)
-        turned = np.abs(rods.plastic_rotation) * rods.end_stiffness[:, ::2] > COLLAPSED * rods.moment_limit
+        turned = np.abs(rods.plastic_rotation) * rods.end_stiffness[:, ::2] > _COLLAPSED * rods.moment_limit
         if len(worn):  # what yields less may do so in an overshoot that ends before it matters
             names, at = tuple(rods.column("name")[worn].tolist()), rods.column("yielded_at")[worn].max()
             said = plural(

@@ -19,8 +19,7 @@ from pinjoint.systems.physics.pace import expected_response, loaded_mode
 
 DRAWN = 0.08  # of the structure's size: the largest displacement as drawn, at most, when a factor is chosen
 KEPT = (0.02, 0.25)  # of the size, drawn, within which a factor stays as it is
-FROM = 5.0  # the smallest factor; what would need less is seen without one
-TRUE = 1.0  # the factor of motions that are seen without one
+_TRUE = 1.0  # the factor of motions that are seen without one
 LEAST = 1e-7  # of the size: smaller displacements are rounding
 
 
@@ -54,19 +53,19 @@ class Exaggeration:
         model, present = self._model, float(self._model.settings.automatic_displacement_scale)
         size = extent(model) if model.particles.count else 0.0
         if not 0.0 < size < math.inf or incomputable(model):
-            return TRUE
+            return _TRUE
         if model.solution is None and _moves_far(model):
-            return TRUE
+            return _TRUE
         expected = 0.0 if model.solution is not None else _largest_expected(model)
         largest = max(expected, _amplitude(model) if still else 0.0)
         if not math.isfinite(largest):
-            return TRUE
+            return _TRUE
         if largest < LEAST * size:
             return present
         if KEPT[0] <= present * largest / size <= KEPT[1]:
             return present
         most = DRAWN * size / largest
-        return round_down(most) if most >= FROM else TRUE
+        return round_down(most) if most >= 5.0 else _TRUE  # what would need less is seen without one
 
 
 def _largest_expected(model: Model) -> float:

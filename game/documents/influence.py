@@ -19,14 +19,13 @@ from pinjoint.components.field import ENDS, Column, FieldError
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
-from pinjoint.components.particle import supported
+from pinjoint.components.particle import AXES, supported
 from pinjoint.components.rod import Rod, bends
 from pinjoint.components.spans import Curves, extremes
 from pinjoint.components.units import inside
 from pinjoint.components.view import Shape
 from pinjoint.components.wording import quoted
 from pinjoint.documents.shapes import NoShape, drawn_share
-from pinjoint.systems.statics.equations import AXES
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion
 from pinjoint.systems.statics.theory import FirstOrder, Indeterminacy, influence_line, mechanisms

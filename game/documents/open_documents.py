@@ -38,8 +38,8 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
 
 Source = str | Path | Mapping[str, Any]  # of a model: a file, the name of a bundled one, or its content
 
-YIELDED = ("rods.plastic_strain", "rods.plastic_rotation")
-SETTLED = ("particles.displacement", "particles.rotation", *YIELDED)  # what settling changes
+_YIELDED = ("rods.plastic_strain", "rods.plastic_rotation")
+SETTLED = ("particles.displacement", "particles.rotation", *_YIELDED)  # what settling changes
 
 
 @dataclass(frozen=True)
@@ -135,9 +135,9 @@ class OpenDocument:
     def _permanent_undeformed(self) -> Column:
         """The plastic strain and rotations from before it was run or settled, (rods, 3)."""
         if self.is_undeformed:
-            return np.column_stack([self._held(name) for name in YIELDED])
+            return np.column_stack([self._held(name) for name in _YIELDED])
         begun = self.undeformed or Snapshot.initial(self.model)
-        return np.column_stack([begun.column(self.model, name) for name in YIELDED])
+        return np.column_stack([begun.column(self.model, name) for name in _YIELDED])
 
     def _note_undeformed(self) -> None:
         """Time is about to pass, or the structure to settle."""

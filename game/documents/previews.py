@@ -13,9 +13,6 @@ import numpy as np
 from pinjoint.components.model import Model
 from pinjoint.documents import models
 
-LARGEST_SOLVED = 60  # rods, up to which a structure that never moved is solved for its picture
-LARGEST_SHOWN = 2000  # rods, up to which forces can be told apart in one
-
 
 def preview(source: str | Path) -> Model:
     """A model to look at only: a file as it was saved, an example at a moment when something happens. Raises ModelError.
@@ -27,7 +24,7 @@ def preview(source: str | Path) -> Model:
     model = models.load(source)
     particles, rods = model.particles, model.rods
     has_moved = particles.displacement.any() or particles.velocity.any()
-    if 0 < rods.count <= (LARGEST_SHOWN if has_moved else LARGEST_SOLVED):
+    if 0 < rods.count <= (2000 if has_moved else 60):  # whose forces can be told apart, or are found at once
         # Here only, since examples do without.
         from pinjoint.systems.statics.equations import Structure
         from pinjoint.systems.statics.events import NoEquilibrium

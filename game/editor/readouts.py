@@ -36,12 +36,10 @@ if TYPE_CHECKING:  # statics takes a tenth of a second to import
 
 BESIDE = marked("Theory beside the run")  # the title of a panel
 MOST_ELEMENTS = 3  # selected elements with a readout of their own
-SUM = 34  # characters of a line of a sum
-MOST_JOINTS = 6  # whose sums are shown while none is selected
+_MOST_JOINTS = 6  # whose sums are shown while none is selected
 MOST_EVENTS = 10  # of a run, that are listed
 UNSEEN = 1e-7  # of the largest force on a body: left out of sums
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
-NO_ENERGY = 1e-5  # of the largest energy: less is shown as 0 beside it
 
 _BEFORE_SIGNS = re.compile("([+−=]) ")  # where a sum may be broken
 _WAYS = {"simulation": marked("the run"), "linear": marked("linear theory"), "exact": marked("exact theory")}
@@ -87,7 +85,7 @@ def _events(context: Context) -> Iterator[Readout]:
 
 def _energy(context: Context) -> Iterator[Readout]:
     energies = context.energy.as_dict()
-    nothing = NO_ENERGY * max(map(abs, energies.values()))
+    nothing = 1e-5 * max(map(abs, energies.values()))  # less is shown as 0 beside the largest
     rows = [
         (tr(_ENERGIES[name]), f"{written.number(value, nothing=nothing)} J") for name, value in energies.items()
     ]
@@ -160,10 +158,10 @@ def _equilibrium(context: Context) -> Iterator[Readout]:
     if not chosen:
         shown = [
             (f"{particle.said} {title}" if title else "", total)
-            for particle in list(model.particles)[:MOST_JOINTS]
+            for particle in list(model.particles)[:_MOST_JOINTS]
             for title, total in _sums(on_joint(model, particle.row))
         ]
-        more = model.particles.count - MOST_JOINTS
+        more = model.particles.count - _MOST_JOINTS
         rest = (
             [(plural("and one more", "and {count} more", more), tr("select one to see it"))] if more > 0 else []
         )
@@ -193,7 +191,7 @@ def _sums(forces: Sequence[Force]) -> Iterator[tuple[str, str]]:
     for title, terms in parts.items():
         _, factor = on_screen("kN·m" if "M" in title else "kN")
         terms = [factor * term if abs(term) > UNSEEN * largest else 0.0 for term in terms]
-        lines = wrap(_BEFORE_SIGNS.sub("\\1\xa0", written.total(terms)), SUM)
+        lines = wrap(_BEFORE_SIGNS.sub("\\1\xa0", written.total(terms)), 34)  # characters
         for number, line in enumerate(lines):
             yield "" if number else title, line.replace("\xa0", " ")
 

@@ -21,7 +21,7 @@ from pinjoint.systems.edit.rods import is_rigid, share_at
 from pinjoint.systems.forms.properties import heading
 from pinjoint.systems.input.actions import ACTIONS, FORCE_METHOD, FORMS, METHODS
 
-PLACE = "place"  # the tools of mods stand at the end of its group, their other buttons in a group of their own
+_PLACE = "place"  # the tools of mods stand at the end of its group, their other buttons in a group of their own
 
 MODS = marked("Mods")
 
@@ -34,7 +34,7 @@ TOOLBAR: dict[str, tuple[str, ...]] = {
     ),
     marked("Method"): ("toggle diagrams of sets", "back"),
     marked("Edit"): ("undo", "redo", "copy", "paste", "duplicate", "delete"),
-    marked("Draw"): (PLACE, "rod", "rigid", "hinge", "support", "force", "moment", "velocity"),
+    marked("Draw"): (_PLACE, "rod", "rigid", "hinge", "support", "force", "moment", "velocity"),
     marked("Show"): (
         *("toggle diagrams", "toggle free bodies", "toggle theory", "toggle energy", "toggle table"),
         *("next shape", "fit", "new grid", "next grid"),
@@ -67,7 +67,7 @@ WORDS = {  # beside icons, where there is room: of actions, or of the icons that
     "paste": marked("paste"),
     "duplicate": marked("duplicate"),
     "delete": marked("delete"),
-    PLACE: marked("particle"),
+    _PLACE: marked("particle"),
     "rod": marked("rod"),
     "rigid": marked("frame rod"),
     "hinge": marked("hinge"),
@@ -115,7 +115,7 @@ def _actions_of_toolbar(context: Context) -> dict[str, Sequence[str]]:
     if context.scenes.active.tools in FORMS:
         return {}
     groups = {
-        name: [*group, *(of_mods(draw=True) if PLACE in group else ())] for name, group in TOOLBAR.items()
+        name: [*group, *(of_mods(draw=True) if _PLACE in group else ())] for name, group in TOOLBAR.items()
     }
     last = groups.popitem()  # which stands at the bottom
     return {**groups, MODS: of_mods(draw=False), last[0]: last[1]}

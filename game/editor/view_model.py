@@ -44,12 +44,9 @@ from pinjoint.systems.input.actions import ACTIONS, LIVE, PROPERTIES
 from pinjoint.systems.render.ui.overlays import BAR
 
 READYING = marked("Getting ready for this model, once: about {seconds:.0f} s left.")
-FLASH = 0.15  # s shown, for which an impact is marked
-MOST_WATCHED = 2000  # particles, up to which it is told that they left the picture
 MOST_NAMED = 3  # of these, by their names
 MOST_TRACED, LONGEST_TRAIL = 5, 600  # particles that leave trails, and moments in these
 FARTHEST = 8.0  # times: by how much the view shows more than the original structure to follow what moves
-MOST_FLASHES = 500  # impacts marked at a time
 
 
 def offer_tools(context: Context) -> None:
@@ -204,11 +201,7 @@ def _provisional(context: Context) -> str:
 def _gone(context: Context) -> str:
     """The sentence that what moves has left the picture, "" if it has not."""
     model, view = context.model, context.view
-    if (
-        context.scene not in LIVE
-        or not 0 < model.particles.count <= MOST_WATCHED
-        or context.document.at_beginning
-    ):
+    if context.scene not in LIVE or not 0 < model.particles.count <= 2000 or context.document.at_beginning:
         return ""
     x, y = view.camera.to_pixels(drawn_positions(model)).T
     v, reach = view.canvas, model.particles.radius * view.camera.scale
@@ -294,8 +287,8 @@ def _flashes(context: Context) -> NDArray[np.float64]:
     impacts = context.simulation.impacts
     if not context.busy or len(impacts) == 0:
         return np.zeros((0, 2))
-    since = context.time - FLASH * context.document.live.clock.shown_pace
-    first = max(int(np.searchsorted(impacts.time, since)), len(impacts) - MOST_FLASHES)
+    since = context.time - 0.15 * context.document.live.clock.shown_pace  # s shown
+    first = max(int(np.searchsorted(impacts.time, since)), len(impacts) - 500)
     return np.column_stack([impacts.x[first:], impacts.y[first:]])
 
 

@@ -64,7 +64,7 @@ def _is_gas(model: Model) -> bool:
     return not pulled and not model.rods.count and int((~model.particles.fixed.all(axis=1)).sum()) >= MANY
 
 
-def toggle_speeds(session: Context, pixel: Vector) -> None:
+def _toggle_speeds(session: Context, pixel: Vector) -> None:
     """Show or hide the speeds of the particles."""
     shown = _asked[session] = not _asked.get(session, _is_gas(session.model))
     if not shown:
@@ -111,4 +111,4 @@ def plugin(app: App) -> None:
     """Register the panels and the key."""
     app.panel(panels)
     live, title = ("simulation", "pause"), marked("show or hide the speeds of particles")
-    app.action("collisions.speeds", key="u", scenes=live, title=title, icon=ICON)(toggle_speeds)
+    app.action("collisions.speeds", key="u", scenes=live, title=title, icon=ICON)(_toggle_speeds)

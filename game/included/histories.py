@@ -23,7 +23,7 @@ from pinjoint.components.mistake import WrongValue, reason_of
 from pinjoint.components.wording import quoted
 from pinjoint.mods import App
 
-STANDARD_GRAVITY = 9.80665  # m/s²
+_STANDARD_GRAVITY = 9.80665  # m/s²
 DIRECTIONS = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
 
 
@@ -56,7 +56,7 @@ def _check_points(history: History, where: str) -> None:
 
 
 KERNELS = "pinjoint.systems.loads.kernels"
-SINE = HistoryKind(
+_SINE = HistoryKind(
     "sine",
     {"frequency": 1.0, "phase": 0.0},
     f"{KERNELS}:sine",
@@ -158,7 +158,7 @@ def run(words: list[str]) -> int:
     options = parser.parse_args(words)
     model = models.load(options.model)
     try:
-        record = read_record(options.record, STANDARD_GRAVITY if options.unit == "g" else 1.0)
+        record = read_record(options.record, _STANDARD_GRAVITY if options.unit == "g" else 1.0)
         shake(model, record, DIRECTIONS[options.direction])
     except OSError as error:
         raise UsageError(
@@ -172,6 +172,6 @@ def run(words: list[str]) -> int:
 
 def plugin(app: App) -> None:
     """Register the histories and the command."""
-    for kind in (SINE, PULSE, TABLE, RECORD):
+    for kind in (_SINE, PULSE, TABLE, RECORD):
         app.history(kind)
     app.command("shake", run, marked("give a model the loads of a recorded base acceleration"))

@@ -26,7 +26,7 @@ if TYPE_CHECKING:  # a command needs no editor
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
-PAST = 300  # samples of the run before a plot was opened
+_PAST = 300  # samples of the run before a plot was opened
 FARTHER = 2.0  # times the largest load step: where a plotted curve ends
 MOST_RODS = 300  # of a structure of which a curve is plotted at once
 PARTS = 24  # of each load step of statics, at which a plot has points
@@ -126,7 +126,7 @@ class Probes:
         probe = Probe(quantity(model, against), tuple(quantity(model, path) for path in paths))
         self.model = weakref.ref(model)
         self.all = [*self.all, probe][-FEW:]
-        for _ in session.document.timeline.revisited(PAST) if model.solution is None else ():
+        for _ in session.document.timeline.revisited(_PAST) if model.solution is None else ():
             session.simulation.observe()
             probe.sample(session, session.time)
         return probe
@@ -206,7 +206,7 @@ def choices(session: Context) -> list[tuple[tuple[str, ...], str]]:
     return [(paths, FACTOR) for paths, against in found if against == TIME]
 
 
-def plot_next(session: Context, pixel: Vector) -> None:
+def _plot_next(session: Context, pixel: Vector) -> None:
     """Plot the first quantity of the selection, then the next; after the last one, none."""
     probes = probes_of(session)
     offered = choices(session)
@@ -228,7 +228,7 @@ def plot_next(session: Context, pixel: Vector) -> None:
     )
 
 
-def plot_curve(session: Context, pixel: Vector) -> None:
+def _plot_curve(session: Context, pixel: Vector) -> None:
     """Plot load against displacement, through limit points, of the selected particle, else of what moves most; or close."""
     from pinjoint.curves import plot  # they import scipy
     from pinjoint.systems.statics.path import Curve, Goal
@@ -265,8 +265,8 @@ def save(session: Context, pixel: Vector) -> None:
     paths = [Path.cwd() / f"pinjoint-plot-{number}.csv" for number, _ in enumerate(shown, 1)]
     with saving():
         for probe, path in zip(shown, paths, strict=True):
-            write_csv(probe, path)
-            write_png(probe, path.with_suffix(".png"), session.view.theme)
+            _write_csv(probe, path)
+            _write_png(probe, path.with_suffix(".png"), session.view.theme)
     names = listed([path.stem for path in paths])
     session.notice = (
         tr("Saved as CSV and PNG: {names}", names=names)
@@ -275,7 +275,7 @@ def save(session: Context, pixel: Vector) -> None:
     )
 
 
-def write_csv(probe: Probe, path: Path) -> None:
+def _write_csv(probe: Probe, path: Path) -> None:
     """Write one sample a line: the time and the quantities, in the units of the headings."""
     against = [] if probe.against.path == TIME else [1]
     titles = [*([probe.against.title] if against else []), *(read.title for read in probe.read)]
@@ -285,7 +285,7 @@ def write_csv(probe: Probe, path: Path) -> None:
     replace(path, written.as_csv([heads, *samples]).encode())
 
 
-def write_png(probe: Probe, path: Path, theme: str = "light") -> None:
+def _write_png(probe: Probe, path: Path, theme: str = "light") -> None:
     """Write the whole plot as a picture."""
     from pinjoint.pictures import plot_picture  # pygame is there when it is needed
 
@@ -353,7 +353,7 @@ def run(words: list[str]) -> int:
         )
     record(session, probe, options.until, options.samples)
     with writing(output):
-        (write_png if output.suffix == ".png" else write_csv)(probe, output)
+        (_write_png if output.suffix == ".png" else _write_csv)(probe, output)
     return 0
 
 
@@ -375,9 +375,9 @@ def plugin(app: App) -> None:
     app.panel(panels)
     app.command("plot", run, marked("write or draw what a run does, against time or other"))
     live = ("simulation", "pause", "statics")
-    app.action("probes.plot", key="o", scenes=live, title=marked("plot the selection"), icon=ICON)(plot_next)
+    app.action("probes.plot", key="o", scenes=live, title=marked("plot the selection"), icon=ICON)(_plot_next)
     app.action("probes.curve", key="ctrl+u", scenes=live[1:], title=marked("plot load against displacement"))(
-        plot_curve
+        _plot_curve
     )
     app.action("probes.save", key="ctrl+e", scenes=live, title=marked("save plots as CSV and PNG"))(save)
     app.action("probes.close", while_drawing=True)(close)

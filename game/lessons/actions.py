@@ -12,7 +12,6 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import IN_LESSONS, actions_of
 
 action = actions_of("Lessons", IN_LESSONS)
-MOST_ANSWERS = 9  # choices, so that each has a key
 
 Session = Any  # pinjoint.session.Session, which holds the lesson
 
@@ -84,7 +83,7 @@ def _leave(session: Session, pixel: Vector) -> None:
 
 action("erase answer", while_drawing=True)(lambda session, pixel: _course(session).erase())
 action("clear answer", while_drawing=True)(lambda session, pixel: _course(session).erase(whole=True))
-for _number in range(MOST_ANSWERS):
+for _number in range(9):  # each has a key
     action(f"answer {_number + 1}", while_drawing=True)(
         lambda session, pixel, number=_number: _course(session).choose(number)
     )

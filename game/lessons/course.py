@@ -77,8 +77,9 @@ class Course:
 
     @property
     def takes_return(self) -> bool:
-        """True while Return checks what was typed or chosen."""
-        return bool(self.typed or self.choice) and not self.accepted
+        """True while Return checks what was typed or chosen, or says what is asked where it would open nothing selected."""
+        asks = self.task.kind in (NUMBER, CHOICES) and not self._session.selected
+        return bool(self.typed or self.choice or asks) and not self.accepted
 
     @property
     def awaits_choice(self) -> bool:

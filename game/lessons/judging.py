@@ -25,7 +25,6 @@ Session = Any  # pinjoint.session.Session, which holds the lesson
 Document = Mapping[str, Any]
 Answer = str | float | tuple[str, ...] | None  # text of a choice; number; names of elements; not given yet
 
-NEARLY = 1e-6  # as a share: what differs by less from the largest is as large
 LEAST = 1e-9  # by which an answer may differ from 0
 _PLACE = re.compile(r"\{([^{}:]+)(?::([^{}]*))?\}")  # in a text: a path, and perhaps a format
 _RELATIONS = {
@@ -191,7 +190,7 @@ def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, s
         sizes = [abs(value) if word == "largest" else value for _, value in values]
         best = OVER_ALL[word](sizes) if sizes else math.nan
         having = zip(values, sizes, strict=True)
-        right = [handle for (handle, _), size in having if abs(size - best) <= NEARLY * abs(best)]
+        right = [handle for (handle, _), size in having if abs(size - best) <= 1e-6 * abs(best)]  # as large
         right = list(dict.fromkeys(right))  # of one with the same at both ends
     else:
         path, relation = parts_of(asked)[0], asked[len(parts_of(asked)[0]) :]

@@ -24,7 +24,6 @@ _ACTING = {  # what loads, moves or strains a structure, by table
         *("plastic_strain", "plastic_rotation"),
     ),
 }
-_STIFF = 1e9  # times the bending stiffness, so that what is drawn stays straight
 
 
 def elastic_copy(model: Model) -> Model:
@@ -95,7 +94,7 @@ def still(copy: Model, whole: Model, state: SetState, *, moved: bool = False) ->
     copy.writable("particles.displacement")[...] = state.displacement if moved else 0.0
     copy.writable("particles.rotation")[...] = state.rotation if moved else 0.0
     if rods.bending_stiffness.any() and not moved:
-        copy.writable("rods.bending_stiffness")[...] *= _STIFF
+        copy.writable("rods.bending_stiffness")[...] *= 1e9  # what is drawn stays straight
     load = np.pad(External.of(copy).at(1.0), ((0, 0), (0, 1)))
     held = supported(copy)
     held[:, :2] |= turned_supports(copy)[:, None]

@@ -36,8 +36,8 @@ from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.superposition import SetState, Superposition
 from pinjoint.systems.statics.unknowns import MethodError, Unknown
 
-DIAGRAM_HEIGHT = 34.0  # px of the largest force diagram
-SWING = 3.0  # s in which a mechanism is shown to move there and back
+_DIAGRAM_HEIGHT = 34.0  # px of the largest force diagram
+_SWING = 3.0  # s in which a mechanism is shown to move there and back
 
 
 @dataclass
@@ -74,7 +74,7 @@ class Set:
         between = farthest(self.model, np.flatnonzero(self.model.rods.bending_stiffness > 0.0))[0]
         self.suited = scale_to(DRAWN_SHARE * size, max(largest(state.displacement), largest(between)))
         if not is_frame(self.model):
-            self.model.settings.diagram_scale = scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
+            self.model.settings.diagram_scale = scale_to(_DIAGRAM_HEIGHT, largest(state.axial_force))
 
     def settle(self) -> None:
         """Skip the rest of the motion: go to its equilibrium, if there is one."""
@@ -104,7 +104,7 @@ class Mechanism:
     def advance(self, elapsed: float) -> None:
         """Let the time of one frame pass."""
         self._time += elapsed
-        swing = math.sin(2.0 * math.pi * self._time / SWING)
+        swing = math.sin(2.0 * math.pi * self._time / _SWING)
         self.model.writable("particles.displacement")[...] = swing * self._motion[:, :2]
         if self._motion.shape[1] > 2:
             self.model.writable("particles.rotation")[...] = swing * self._motion[:, 2]

@@ -44,7 +44,6 @@ from pinjoint.systems.statics.unknowns import Unknown
 from pinjoint.tables import Table
 
 _NOTHING = 1e-9  # kN: of axial forces, which beams have none of
-_TERMS = 6  # of a sum that are written one by one
 _SHOWN = 2  # unknowns of a frame up to which each has a column of superposition
 _MOST, _WIDEST = 6, 9  # unknowns with figures and sums of entries, with K
 _BESIDE = 26  # rows of a table that stands beside others
@@ -451,7 +450,7 @@ def _balance(model: Model, state: SetState) -> Iterator[tuple[str, list[float]]]
                 parts = (x - x[about]) * forces[:, 1] - (y - y[about]) * forces[:, 0]
                 parts = parts + forces[:, 2] if forces.shape[1] > 2 else parts
             parts = parts[used & (np.abs(parts) > written.ROUNDING * largest(parts))]
-            terms += parts.tolist() if len(parts) <= _TERMS else [float(parts.sum())]
+            terms += parts.tolist() if len(parts) <= 6 else [float(parts.sum())]
         size = largest(state.reaction)
         terms = [term for term in terms if abs(term) > written.ROUNDING * size]
         yield name, terms

@@ -13,10 +13,10 @@ from pinjoint.components.arrays import Array, Rows
 from pinjoint.components.field import CM, ENDS
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
-from pinjoint.components.particle import in_support_axes, supported
+from pinjoint.components.particle import AXES, in_support_axes, supported
 from pinjoint.components.rod import bends, nodes
 from pinjoint.methods import index
-from pinjoint.systems.statics.equations import AXES, largest
+from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.force_method import Solution, Terms, bulge
 from pinjoint.systems.statics.superposition import SetState, Superposition
 from pinjoint.tables import Column, Table

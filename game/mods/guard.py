@@ -45,7 +45,6 @@ if TYPE_CHECKING:  # a command needs no editor
 PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
 
 _ROLES = (Law, Commit, Event, Integrator, StepSystem, System)
-_QUESTIONS = ("needs", "arrays", "leaves_flight_exact", "cutoff", "held_forces")  # that systems answer
 Panel = Callable[[Any], Readout | Sequence[Readout] | None]  # is given the context
 _MOST_MARKS = 1_000_000  # of a layer: an iterator may have no end, in code that nothing interrupts
 _READ = {"heading": str, "message": str, "boxes": dict[str, str]}  # as attributes or properties
@@ -95,7 +94,7 @@ class Guard:
             own["held_forces"] = lambda model: np.broadcast_to(
                 np.asarray_chkfinite(held(model)), (model.particles.count, 2)
             )
-        for name in _QUESTIONS:
+        for name in ("needs", "arrays", "leaves_flight_exact", "cutoff", "held_forces"):
             if hasattr(role, name):
                 asked = tr("{method} of '{name}'", method=name, name=made.name)
                 declared, plain = result_of(getattr(role, name)), getattr(role, name)(made, None)

@@ -17,7 +17,6 @@ from pinjoint.systems import is_ours
 T = TypeVar("T")
 
 LOOK = 0.02  # s between looks at what runs
-_LOOK_AGAIN = 1e-4  # s between them where it has run too long, but not in a mod now
 AGAIN = 0.05  # s after which code that caught the exception and goes on is interrupted once more
 
 
@@ -67,7 +66,7 @@ class _Watchdog:
                     self._fired, self.deadline = True, time.monotonic() + AGAIN
                     given = ctypes.c_ulong(self._thread), ctypes.py_object(TooLong)
                     ctypes.pythonapi.PyThreadState_SetAsyncExc(*given)
-            time.sleep(_LOOK_AGAIN if late else LOOK)
+            time.sleep(1e-4 if late else LOOK)
 
     def _runs(self) -> bool:
         """True if the thread is in code of the folder, or in code called by that which is not Pinjoint's own."""

@@ -187,7 +187,6 @@ def _forget(mod: Mod) -> None:
 # --- what a mod shares with the program ---------------------------------------------------------------------
 
 
-_STREAMS = ("stdin", "stdout", "stderr")
 _LIBRARIES = (math, np)  # by which everything computes
 
 
@@ -196,7 +195,7 @@ class Surroundings:
 
     def __init__(self) -> None:
         self._modules, self._threads = dict(sys.modules), set(threading.enumerate())
-        self._streams = {name: getattr(sys, name) for name in _STREAMS}
+        self._streams = {name: getattr(sys, name) for name in ("stdin", "stdout", "stderr")}
         self._functions = [(library, dict(vars(library))) for library in _LIBRARIES]
 
     def check(self) -> None:
@@ -244,7 +243,7 @@ class Surroundings:
 # --- finding them ------------------------------------------------------------------------------------------
 
 
-GROUP = "pinjoint.mods"  # entry points of installed packages
+_GROUP = "pinjoint.mods"  # entry points of installed packages
 PROGRAM = "pinjoint"  # what a mod calls the program that it requires
 
 
@@ -274,11 +273,11 @@ def _in_folder(folder: Path) -> list[Mod]:
 def _in_packages() -> list[Mod]:
     """The mods of installed packages, by name."""
     lists = (file for path in sys.path for file in Path(path).glob("*-info/entry_points.txt"))
-    if not any(GROUP.encode() in file.read_bytes() for file in lists):
+    if not any(_GROUP.encode() in file.read_bytes() for file in lists):
         return []  # in 1 ms: importlib.metadata takes 50 ms to import
     from importlib.metadata import entry_points
 
-    return [_of_package(point.name, point.value) for point in sorted(entry_points(group=GROUP))]
+    return [_of_package(point.name, point.value) for point in sorted(entry_points(group=_GROUP))]
 
 
 def _of_package(name: str, module: str) -> Mod:

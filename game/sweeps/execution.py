@@ -25,11 +25,11 @@ from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
 
-MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
-TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task
-ANSWER_WITHIN = 10.0  # s
+_MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
+_TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task
+_ANSWER_WITHIN = 10.0  # s
 LARGE = 30_000  # variants × rods from which workers are worth the seconds in which they start
-SAFE_PATH = "PYTHONSAFEPATH"  # of the environment
+_SAFE_PATH = "PYTHONSAFEPATH"  # of the environment
 LIGHT = 40  # rods up to which a variant takes as long as one of this many
 
 
@@ -136,8 +136,8 @@ def compute_all(
 @contextmanager
 def _local_client(distributed: Any, workers: int) -> Iterator[Any]:
     """Workers of this machine, which import nothing from the folder that somebody happens to be in."""
-    before = os.environ.get(SAFE_PATH)
-    os.environ[SAFE_PATH] = "1"
+    before = os.environ.get(_SAFE_PATH)
+    os.environ[_SAFE_PATH] = "1"
     try:
         with distributed.Client(
             n_workers=workers,
@@ -149,13 +149,13 @@ def _local_client(distributed: Any, workers: int) -> Iterator[Any]:
         ) as client:
             yield client
     finally:
-        os.environ.pop(SAFE_PATH)
-        os.environ |= {SAFE_PATH: before} if before is not None else {}
+        os.environ.pop(_SAFE_PATH)
+        os.environ |= {_SAFE_PATH: before} if before is not None else {}
 
 
 def _client_of(distributed: Any, scheduler: str) -> Any:
     try:
-        client = distributed.Client(scheduler, timeout=ANSWER_WITHIN)
+        client = distributed.Client(scheduler, timeout=_ANSWER_WITHIN)
     except (OSError, ValueError) as error:
         raise SweepError(
             "No Dask scheduler answers at {scheduler} ({error}). Start one with: dask scheduler, and workers"
@@ -164,7 +164,7 @@ def _client_of(distributed: Any, scheduler: str) -> Any:
             error=error,
         ) from None
     try:
-        client.wait_for_workers(1, timeout=ANSWER_WITHIN)
+        client.wait_for_workers(1, timeout=_ANSWER_WITHIN)
     except TimeoutError:
         client.close()
         raise SweepError(
@@ -220,5 +220,5 @@ def _computed(plan: Plan, numbers: Sequence[int]) -> list[Outcome]:
 
 
 def _tasks(numbers: Sequence[int], workers: int) -> list[Sequence[int]]:
-    size = min(max(len(numbers) // (workers * TASKS_PER_WORKER), 1), MOST_IN_A_TASK)
+    size = min(max(len(numbers) // (workers * _TASKS_PER_WORKER), 1), _MOST_IN_A_TASK)
     return [numbers[first : first + size] for first in range(0, len(numbers), size)]

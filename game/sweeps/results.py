@@ -19,7 +19,6 @@ from pinjoint.documents.models import replace
 from pinjoint.sweeps.plan import RECORDED, Plan
 from pinjoint.sweeps.variation import INSTALL, SweepError
 
-_MOST_PANELS = 12
 MOST_LINES = 12
 
 
@@ -119,7 +118,7 @@ class Results:
         matplotlib.use("Agg")
         from matplotlib import pyplot
 
-        measures = self.plan.measures[:_MOST_PANELS]
+        measures = self.plan.measures[:12]  # more panels would be too small
         drawn = any(variation.distribution for variation in self.plan.variations)
         figure, axes = pyplot.subplots(
             len(measures),
@@ -150,13 +149,10 @@ class Results:
         others += [name for name, values in asked.items() if values is not None and len(values) > 1]
         lines: dict[str, list[int]] = {}
         for row in np.flatnonzero(self.found).tolist():
-            label = ", ".join(f"{name} {_short(self.columns[name][row])}" for name in others)
+            values = [(name, self.columns[name][row]) for name in others]
+            label = ", ".join(f"{k} {v:.6g}" if isinstance(v, float) else f"{k} {v}" for k, v in values)
             lines.setdefault(label, []).append(row)
         return {label: np.array(rows) for label, rows in lines.items()}
-
-
-def _short(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def check_output(path: Path, suffixes: Sequence[str] = (".csv", ".parquet")) -> None:

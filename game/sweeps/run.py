@@ -22,7 +22,6 @@ from pinjoint.sweeps.variation import SweepError, Value
 Progress = Callable[[int, int, int], None]  # done, of how many, failed
 
 _WIDTH = 30
-_EVERY = 0.2  # s
 
 
 def sweep(
@@ -160,7 +159,7 @@ class ProgressBar:
             parts.append(tr("{time} left", time=_duration(left)))
         text = ", ".join(parts)
         if self._stream.isatty():
-            if now - self._shown >= _EVERY or done == total:
+            if now - self._shown >= 0.2 or done == total:
                 self._shown = now
                 filled = "█" * (_WIDTH * done // total)
                 self._stream.write(f"\r\x1b[K{filled:░<{_WIDTH}} {text}" + ("\n" if done == total else ""))

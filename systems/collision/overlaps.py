@@ -19,10 +19,10 @@ from pinjoint.systems.program.compiler import LONGEST_WORK, GeneratedModule, ent
 
 SLACK = 1e-13  # of the reach of two discs: a smaller overlap is round-off
 AROUND = 1.5  # radii: the neighbours of a disc within it are moved apart at a time
-MOST_ROUNDS = 100  # in each of which neighbours are found anew
+_MOST_ROUNDS = 100  # in each of which neighbours are found anew
 MOST_SWEEPS = 400  # over the same pairs; overlaps that these leave stay
-JOINT_WORK = 32  # operations in a joint impact, for each of the pairs and each disc of the row that passes it on (measured)
-UNSEEN_OVERLAP = 1e-3  # of a radius: too small to see, as steps of piles leave them, and not worth a message
+_JOINT_WORK = 32  # operations in a joint impact, for each of the pairs and each disc of the row that passes it on (measured)
+_UNSEEN_OVERLAP = 1e-3  # of a radius: too small to see, as steps of piles leave them, and not worth a message
 
 Among = Callable[[Rows], NDArray[np.bool_]]
 
@@ -64,7 +64,7 @@ def part(
     places, moved = np.concatenate([position, others.start]), np.concatenate([displacement, still])
     span = np.concatenate([np.zeros_like(position), others.span])
     radii, inverse = np.concatenate([radius, others.radius]), np.concatenate([inverse_mass, still])
-    for _ in range(MOST_ROUNDS):
+    for _ in range(_MOST_ROUNDS):
         near = near_pairs(position + moved[:count], AROUND * radius, others)
         near = near[among(near)]
         first, second = np.ascontiguousarray(near[:, 0]), np.ascontiguousarray(near[:, 1])
@@ -110,7 +110,7 @@ def work_ahead(model: Model) -> tuple[int, int]:
     touching = place[pairs[:, 0]]
     row = float(np.ptp(touching, axis=0).max() / (2.0 * particles.radius[pairs[:, 0]].min())) + 1.0
     together = 0 if particles.constant_force.any() else len(pairs) - overlapping
-    return MOST_SWEEPS * overlapping, int(JOINT_WORK * together * row)
+    return MOST_SWEEPS * overlapping, int(_JOINT_WORK * together * row)
 
 
 def part_overlaps(model: Model) -> Generator[None, None, str]:
@@ -129,7 +129,7 @@ def part_overlaps(model: Model) -> Generator[None, None, str]:
     left = yield from part(*columns, among, others)
     farthest = float(np.abs(displacement - particles.displacement).max())
     model.writable("particles.displacement")[...] = displacement
-    if farthest <= UNSEEN_OVERLAP * float(particles.radius.min()) and not left:
+    if farthest <= _UNSEEN_OVERLAP * float(particles.radius.min()) and not left:
         return ""
     if (overlapping[:, 1] >= particles.count).any():
         note = plural(

@@ -22,12 +22,7 @@ Loaded = Particle | Rod | Load | SpanLoad
 
 COMFORTABLE = 100.0  # points, length of an arrow of usual size
 LONGEST = 400.0  # points, of the largest arrow before another scale is taken
-USUAL_STRAIN = 1e-3  # of a loaded structure, where no force is known yet
-USUAL_SLOPE = 0.1  # force × length² / bending stiffness of members, likewise
-LEVER = 0.25  # of a moment, as a share of the extent
-USUAL_ACCELERATION = 10.0  # m/s², of a loaded free body
-USUAL_SPEED = 5.0  # m/s
-ARC = 24.0  # points around what bears a moment, within which its arrow is
+_ARC = 24.0  # points around what bears a moment, within which its arrow is
 # By the same scale.
 _DISTRIBUTED = {"start_intensity": "distributed_force", "end_intensity": "distributed_force"}
 WHOLE = 0.3  # share of a distributed load at either end, by which its intensity there is dragged; between, both
@@ -45,18 +40,18 @@ def usual(model: Model, field: str) -> float:
     if largest > 0.0:
         return largest
     if field == "velocity":
-        return USUAL_SPEED
+        return 5.0  # m/s
     if field == "moment":
-        return LEVER * usual(model, "force") * extent(model)
+        return 0.25 * usual(model, "force") * extent(model)
     rods = model.rods
     span = float(rods.original_length.max(initial=0.0)) or 1.0
     if field == "distributed_force":
         return usual(model, "force") / span
     if rods.count and (bending := rods.bending_stiffness.max()) > 0.0:
-        return float(USUAL_SLOPE * bending / span**2)
+        return float(0.1 * bending / span**2)  # a usual slope
     if rods.count:
-        return float(USUAL_STRAIN * rods.stiffness.max())
-    return float(USUAL_ACCELERATION * model.particles.mass.max(initial=1.0) / 1000.0)
+        return float(1e-3 * rods.stiffness.max())  # a usual strain
+    return float(10.0 * model.particles.mass.max(initial=1.0) / 1000.0)  # 10 m/s² of a free body
 
 
 def extent(model: Model) -> float:
@@ -116,7 +111,7 @@ def dragged(model: Model, view: View, element: Loaded, pixel: Vector) -> list[Fi
         return [Rod.distributed_force] if any(element.distributed_force) else []
     on = element.particle if isinstance(element, Load) else element
     rim = on.radius * view.camera.scale / view.pixel_ratio
-    if element.moment and _away(view, drawn_at(model, on), pixel) <= rim + ARC:
+    if element.moment and _away(view, drawn_at(model, on), pixel) <= rim + _ARC:
         return [kind.moment]
     return [kind.force] if any(element.force) else []
 
@@ -131,9 +126,9 @@ def _dragged_between(model: Model, view: View, load: SpanLoad, pixel: Vector) ->
         return [SpanLoad.start]
     if spread and from_end <= PARTICLE_REACH:
         return [SpanLoad.end]
-    if load.moment and from_start <= ARC:
+    if load.moment and from_start <= _ARC:
         return [SpanLoad.moment]
-    if any(load.force) and (from_start <= ARC or not spread):
+    if any(load.force) and (from_start <= _ARC or not spread):
         return [SpanLoad.force]
     share = (share_at(rod, view.camera.to_model(pixel)) * length - start) / max(end - start, 1e-300)
     of_start, of_end = [SpanLoad.start_intensity], [SpanLoad.end_intensity]

@@ -18,10 +18,9 @@ from pinjoint.components.view import View, drawn_positions
 from pinjoint.systems.broad_phase import distance_to_segments
 
 PARTICLE_REACH = 8.0  # points from the centre, at least its radius
-ROD_REACH = 10.0  # points
+_ROD_REACH = 10.0  # points
 END_REACH, END_SHARE = 48.0, 0.4  # points, and share of a rod: what belongs to an end of it
 RING = 16.0  # points from a joint, where hinges of one rod are
-GRID_REACH = 5.0  # points
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,7 @@ def pick(model: Model, view: View, pixel: Vector) -> Handle | None:
     return pick_particle(model, view, pixel) or pick_line(model, view, pixel)
 
 
-def pick_line(model: Model, view: View, pixel: Vector, reach: float = ROD_REACH) -> Handle | None:
+def pick_line(model: Model, view: View, pixel: Vector, reach: float = _ROD_REACH) -> Handle | None:
     """The rod, else the element of a mod's kind with points, within reach (points) of a pixel."""
     return pick_rod(model, view, pixel, reach) or _outlined_at(model, view, pixel, reach)
 
@@ -82,7 +81,7 @@ def pick_particle(model: Model, view: View, pixel: Vector) -> Particle | None:
     return model.particles[nearest] if beyond[nearest] <= 0.0 else None
 
 
-def pick_rod(model: Model, view: View, pixel: Vector, reach: float = ROD_REACH) -> Rod | None:
+def pick_rod(model: Model, view: View, pixel: Vector, reach: float = _ROD_REACH) -> Rod | None:
     """The nearest rod within reach (points) of a pixel, bent ones along their curves."""
     if model.rods.count == 0:
         return None
@@ -125,7 +124,7 @@ def pick_point(model: Model, view: View, pixel: Vector, besides: Handle | None =
 
 def pick_grid(model: Model, view: View, pixel: Vector) -> Grid | None:
     """The shown grid, if one of its lines is within reach of a pixel."""
-    reach = GRID_REACH * view.pixel_ratio
+    reach = 5.0 * view.pixel_ratio
     if view.strip.contains(pixel):
         return None
     for row in np.flatnonzero(model.grids.shown).tolist():

@@ -30,9 +30,6 @@ _MADE_OF = (
 )
 
 
-_PARALLEL = 1e-6  # sine of the angle between lines that do not cross
-
-
 def distance(first: Particle, second: Particle) -> float:
     """Present distance (m) between two particles."""
     ends = [np.add(end.position, end.displacement) for end in (first, second)]
@@ -95,7 +92,7 @@ def members_met(model: Model, start: Vector, end: Vector, reach: float) -> list[
         share = (off[:, 0] * way[1] - off[:, 1] * way[0]) / across
         near = np.minimum(share, 1.0 - share) * np.hypot(*along.T)
         met = (rods.bending_stiffness > 0.0) & (near > reach) & (at > -reach) & (at < length + reach)
-    met &= np.abs(across) > _PARALLEL * length * np.hypot(*along.T)
+    met &= np.abs(across) > 1e-6 * length * np.hypot(*along.T)  # sine of the angle between them
     return sorted(
         ((float(at[row]), rods[row], float(share[row])) for row in np.flatnonzero(met).tolist()),
         key=itemgetter(0),

@@ -117,7 +117,7 @@ def _all_along(model: Model, rod: Handle, force: Any, case: str) -> None:
     model.create(SpanLoad, rod=[rod.row], case=[case], start_intensity=[force], end_intensity=[force])
 
 
-def to_case(model: Model, elements: Sequence[Handle], case: str) -> None:
+def _to_case(model: Model, elements: Sequence[Handle], case: str) -> None:
     """Make what acts on particles and rods, as their own, loads of a case."""
     for element in elements:
         if isinstance(element, Particle):
@@ -132,7 +132,7 @@ def to_case(model: Model, elements: Sequence[Handle], case: str) -> None:
 def _assign(model: Model, box: Box, elements: Sequence[Handle]) -> None:
     field, part = _target(model, box)
     if part == CASE:
-        to_case(model, elements, check_case(box.text, box.section))
+        _to_case(model, elements, check_case(box.text, box.section))
         return
     value = _value(field, part, box.text)
     if part.endswith(f".{NAMED}") and box.opened and value != REMOVE:

@@ -23,17 +23,15 @@ from pinjoint.components.rod import Rod, rigid_joints
 from pinjoint.components.settings import Environment, Settings
 from pinjoint.systems.forms.typing import YES_NO, Typing
 
-MIXED = marked("mixed")
+_MIXED = marked("mixed")
 KIND = "kind"  # the part of a history that is its kind
 CASE = "case"  # the part of an own load that makes it one of a case
 NAMED = "name"  # the part of a combination that is its name
 REMOVE = marked("remove it")  # what takes a combination away, in place of its name
 COMBINATION = marked("new combination")
-_MOST_ACROSS = 4  # boxes of a combination
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
 # By the run, or by buttons.
 _DECIDED = (Particle.asleep, Rod.yielded_at, Rod.hinge_formed_at, Settings.combination)
-_OWN_LOADS = (Particle.force, Rod.distributed_force)
 # The groups of boxes by heading, in the order in which they follow one another, with the Fields of all kinds in each, those
 # that matter first. What is in none, such as a Field of a mod, stands in the first, under the name of its element.
 GROUPS: Mapping[str, tuple[Field[Any], ...]] = {
@@ -78,7 +76,6 @@ _OF_BENDING = (  # what means nothing to rods that do not bend, and where none t
     Particle.prescribed_inertia,
 )
 _NUMBERS = (float, int)
-_EDITABLE = (*_NUMBERS, bool, str)
 
 
 @dataclass(frozen=True)
@@ -142,7 +139,7 @@ def _groups(model: Model, section: str, elements: Sequence[Handle]) -> Iterator[
     wanted = [
         field
         for field in fields
-        if (field.dtype in _EDITABLE or field in (Load.history, Settings.combinations))
+        if (field.dtype in (*_NUMBERS, bool, str) or field in (Load.history, Settings.combinations))
         and (turn or field not in _OF_BENDING)
         and (len(elements) == 1 or field.name != "name")
         and field not in _DECIDED
@@ -199,7 +196,8 @@ def _boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[Box]:
         content = _content(model, subject, field, axis)
         accepts = NUMBER if field.dtype in _NUMBERS else TEXT if not words else NAME if field.checker else WORD
         yield _box(subject, field, axis, content, accepts, words)
-    if field in _OWN_LOADS and model.tables[subject.elements[0].table].column(field.name)[subject.rows].any():
+    own = field in (Particle.force, Rod.distributed_force)
+    if own and model.tables[subject.elements[0].table].column(field.name)[subject.rows].any():
         box = _box(subject, field, CASE, (PERMANENT, ""), NAME, tuple(cases(model)))
         yield replace(box, title=Load.case.title, unit="", explanation=Load.case.doc)
 
@@ -215,7 +213,7 @@ def cases_named(model: Model) -> list[str]:
 def _combination_boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[Box]:
     """The name of each combination, and its factors in a row below; then the name of a new one."""
     known, combinations = cases_named(model), model.settings.combinations
-    across = min(len(known), _MOST_ACROSS)
+    across = min(len(known), 4)
     for row, (name, factors) in enumerate(combinations.items()):
         box = _box(subject, field, f"{row}.{NAMED}", (name, ""), NAME, (REMOVE,))
         yield replace(box, title=marked("combination"), across=2)
@@ -283,7 +281,7 @@ def _content(model: Model, subject: Subject, field: Field[Any], axis: str) -> tu
         text, note = _content(model, subject, table.fields[field.overrides], axis)
         return text, joined([note, tr(field.absent)], ", ")
     if not (values == values[0]).all():
-        return "", tr(MIXED)
+        return "", tr(_MIXED)
     if values[0] is None:
         return field.absent, ""
     return _written(field, values[0]), ""

@@ -21,7 +21,7 @@ from pinjoint.components.particle import Particle, in_support_axes, supported, t
 from pinjoint.components.rod import Rod, bearing, bends_unchecked, rigid_joints, utilisation
 from pinjoint.components.view import Readout
 
-SECTION = marked("Results")
+_SECTION = marked("Results")
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small
 _MRAD = "mrad", 1000.0  # rotations of structures are small
 SHORT = 4  # characters of names by which the ends of a rod are called
@@ -130,7 +130,7 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]:
             stress = 1e-3 * force / np.where(np.isnan(rods.area), np.inf, rods.area)
             told = marked("Axial force divided by the area of the cross-section; positive in tension.")
             title = tr("axial stress") if rods.bending_stiffness[row] else tr("stress")
-            yield Reading(SECTION, title, _number(stress[row], stress, "MPa"), told)
+            yield Reading(_SECTION, title, _number(stress[row], stress, "MPa"), told)
         yield _result(tr("length"), _number(length[row], length, CM[0]), Rod.length)
         yield from _at_ends(columns, row)
         if np.isfinite(rods.buckling_load[row]):
@@ -192,7 +192,7 @@ def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]
             "Axial force divided by the strength; for bending, choose a section, whose depth is known."
         )
         title = tr("largest axial utilisation") if several else tr("axial utilisation")
-    yield Reading(SECTION, title, text, told)
+    yield Reading(_SECTION, title, text, told)
 
 
 # --- particles ----------------------------------------------------------------------------------------
@@ -294,7 +294,7 @@ def _of_others(model: Model, handle: Handle) -> Iterator[Reading]:
 
 
 def _result(title: str, text: str, field: Field[Any]) -> Reading:
-    return Reading(SECTION, title, text, field.doc)
+    return Reading(_SECTION, title, text, field.doc)
 
 
 def _vector(

@@ -27,12 +27,12 @@ TABLE = "table"  # no scene: the keys while the pointer is over a table of resul
 TEXT = "text "  # prefix of the "key" of typed text, such as "text a"
 FILES = "files "  # prefix of the "key" of files dropped on the window: their paths, a line each
 
-MODIFIERS = {"ctrl+": "ctrl+", "control+": "ctrl+", "cmd+": "ctrl+", "shift+": "shift+"}
-ALSO_CALLED = {"esc": "escape", "enter": "return", "del": "delete", "spacebar": "space", " ": "space"}
-ALSO_CALLED |= {"pageup": "page up", "pagedown": "page down"}
+_MODIFIERS = {"ctrl+": "ctrl+", "control+": "ctrl+", "cmd+": "ctrl+", "shift+": "shift+"}
+_ALSO_CALLED = {"esc": "escape", "enter": "return", "del": "delete", "spacebar": "space", " ": "space"}
+_ALSO_CALLED |= {"pageup": "page up", "pagedown": "page down"}
 
 # In the order in which the help lists them.
-PURPOSES = (
+_PURPOSES = (
     *(marked("Time"), marked("Draw"), marked("Select and edit"), marked("Results"), marked("Methods")),
     *(marked("Boxes"), marked("View"), marked("Lessons"), marked("Files"), marked("Menu"), marked("More")),
 )
@@ -106,7 +106,7 @@ class Actions(UserDict[str, Action]):
 
     def bound(self) -> Iterator[tuple[Action, Binding]]:
         """Every key with its action, by purpose."""
-        for action in sorted(self.values(), key=lambda action: PURPOSES.index(action.purpose)):
+        for action in sorted(self.values(), key=lambda action: _PURPOSES.index(action.purpose)):
             yield from ((action, binding) for binding in action.bindings if binding.key)
 
     def at(self, scene: str, key: str) -> tuple[Action, Binding] | None:
@@ -170,10 +170,10 @@ class Actions(UserDict[str, Action]):
         if text.startswith((TEXT, FILES)):
             return text
         name, held = text.lower(), set()
-        while modifier := next((m for m in MODIFIERS if name.startswith(m) and len(name) > len(m)), None):
-            held.add(MODIFIERS[modifier])
+        while modifier := next((m for m in _MODIFIERS if name.startswith(m) and len(name) > len(m)), None):
+            held.add(_MODIFIERS[modifier])
             name = name.removeprefix(modifier)
-        name = ALSO_CALLED.get(name, name)
+        name = _ALSO_CALLED.get(name, name)
         if not self._known:
             bound = (binding.key for _, binding in self.bound())
             self._known = {key.removeprefix("ctrl+").removeprefix("shift+") for key in bound}

@@ -12,10 +12,9 @@ from pinjoint.components.field import Vector
 from pinjoint.systems.base import Phase, System
 from pinjoint.systems.input.actions import ACTIONS, FILES, MENU, TABLE, TEXT
 
-CLICK_REACH = 4.0  # points that the pointer may move while a button is down; more: a drag
-DOUBLE_CLICK = 0.4  # s between two clicks that count as a double click
+_CLICK_REACH = 4.0  # points that the pointer may move while a button is down; more: a drag
 IDLE_PAUSE = 0.016  # s between polls for events while nothing moves
-IDLE_LOOKS = 16  # polls before a frame passes without events
+_IDLE_LOOKS = 16  # polls before a frame passes without events
 WAITING_LOOKS = 4  # polls while something is compiled, which frames would slow down
 
 _NAMES = {
@@ -78,7 +77,7 @@ class PygameInput(System):
         readiness = session.readiness
         waiting = readiness.awaited is not None
         if not events and session.footer is None and (waiting or not session.busy):
-            events = _awaited(WAITING_LOOKS if waiting or readiness.finding else IDLE_LOOKS)
+            events = _awaited(WAITING_LOOKS if waiting or readiness.finding else _IDLE_LOOKS)
         for event in events:
             self._handle(event, frame)
         dropped = [event.file for event in events if event.type == pygame.DROPFILE]
@@ -137,7 +136,7 @@ class PygameInput(System):
 
     def _drag(self, event: pygame.event.Event, frame: Any, ratio: float) -> None:
         _, middle, right = event.buttons
-        reach = CLICK_REACH * frame.session.view.pixel_ratio
+        reach = _CLICK_REACH * frame.session.view.pixel_ratio
         if right and self._right is not None:  # a right click, until the pointer has gone too far for one
             across, down = _scaled(event.rel, ratio)
             self._right = gone = self._right[0] + across, self._right[1] + down
@@ -167,8 +166,8 @@ class PygameInput(System):
         key, pointer = "drop" if dragging else grip[0], frame.session.view.pixel
         now, before = time.monotonic(), self._clicked
         self._clicked = (now, pointer) if key == "click" else None
-        reach = 2.0 * CLICK_REACH * frame.session.view.pixel_ratio
-        soon = key == "click" and before is not None and now - before[0] <= DOUBLE_CLICK
+        reach = 2.0 * _CLICK_REACH * frame.session.view.pixel_ratio
+        soon = key == "click" and before is not None and now - before[0] <= 0.4  # s
         if soon and before is not None and math.dist(pointer, before[1]) <= reach:
             key, self._clicked = "double click", None
         frame.pressed.append((key, pointer))

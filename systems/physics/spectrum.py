@@ -14,7 +14,7 @@ from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.rod import bends
 from pinjoint.systems.physics.bending import slopes
 
-LANCZOS_STEPS = 24  # more: closer bounds; the bound is safe at any number
+_LANCZOS_STEPS = 24  # more: closer bounds; the bound is safe at any number
 
 
 @dataclass(frozen=True)
@@ -105,15 +105,15 @@ def _largest_eigenvalue(operator: RodOperator) -> float:
     of (1, −1).
     """
     size, bound = math.prod(operator.shape), operator.gershgorin()
-    if size <= LANCZOS_STEPS:  # the method would go all the way
+    if size <= _LANCZOS_STEPS:  # the method would go all the way
         matrix = [operator(unit.reshape(operator.shape)).ravel() for unit in np.eye(size)]
         return min(max(float(np.linalg.eigvalsh(matrix)[-1]), 0.0), bound)
     vector = np.modf(np.arange(1, size + 1) ** 2 * 0.6180339887498949)[0] - 0.5
     vector /= math.sqrt(float((vector * vector).sum()))
-    basis = np.empty((LANCZOS_STEPS, size))
+    basis = np.empty((_LANCZOS_STEPS, size))
     diagonal: list[float] = []
     off_diagonal: list[float] = []
-    for step in range(1, LANCZOS_STEPS + 1):
+    for step in range(1, _LANCZOS_STEPS + 1):
         basis[step - 1] = vector
         product = operator(vector.reshape(operator.shape)).ravel()
         diagonal.append(float((product * vector).sum()))

@@ -29,7 +29,7 @@ from pinjoint.systems.program.interpreter import plain_function
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
 _OF_SLIPPING = ("moment_start", "moment_end")  # as if the ends did not slip
 _OF_BRANCHES = (*_OF_SLIPPING, "gain_start", "gain_end", "thrust", "elongation", "rate", "dt")
-PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
+_PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
     "rods": (*_TO_COMMITS, "rate"),
     "particles": ("time", "dt"),
     "pairs": ("apart", "drift", "time", "dt"),
@@ -45,14 +45,14 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
     "event of rods": ("elongation", "rate", "axial_force"),
     "event of particles": (),
 }
-PROVIDED = {name for names in PROVIDED_TO.values() for name in names}
+PROVIDED = {name for names in _PROVIDED_TO.values() for name in names}
 TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
 # Of models that bend.
 TURNING = {"particles_rotation": "displacement", "particles_angular_velocity": "velocity"}
 
 KERNELS = ("kernel", "branch", "margin", "potential")  # of a system, as its attributes
 
-WIDEST_ROW = 64  # numbers of an array that a kernel gets, as a tuple; more would take long to compile
+_WIDEST_ROW = 64  # numbers of an array that a kernel gets, as a tuple; more would take long to compile
 
 _KINDS = ("rods", "ends", "particles", "rotations", "pairs", "loads")
 
@@ -144,7 +144,7 @@ class Bound:
 
     @property
     def purpose(self) -> str:
-        """The purpose of the kernel: a key of PROVIDED_TO."""
+        """The purpose of the kernel: a key of _PROVIDED_TO."""
         if isinstance(self.system, Event):
             return f"event of {self.each}"
         return (self.each or "commit") if self.kernel == "kernel" else self.kernel
@@ -398,7 +398,7 @@ def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., A
 def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     """Raise ProgramError unless the parameter is provided, an array of the system or a column that it declares."""
     rows, name = b.rows, b.system.name
-    provided = PROVIDED_TO[b.purpose]
+    provided = _PROVIDED_TO[b.purpose]
     conservative = isinstance(b.system, Law) and b.system.potential
     if parameter in ("time", "dt", "drift", "particles_velocity") and conservative:
         raise ProgramError(
@@ -427,13 +427,13 @@ def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
                 table=tr(rows),
             )
         width = math.prod(b.arrays[parameter].shape[1:])
-        if not 0 < width <= WIDEST_ROW:
+        if not 0 < width <= _WIDEST_ROW:
             raise ProgramError(
                 "The array '{name}' of {system} has {count} numbers in a row; a kernel takes 1 to {most}.",
                 name=parameter,
                 system=name,
                 count=width,
-                most=WIDEST_ROW,
+                most=_WIDEST_ROW,
             )
         return
     table, _, column = parameter.partition("_")

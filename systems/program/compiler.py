@@ -51,13 +51,13 @@ def _asked() -> Compile:
 
 
 VARIABLE = "PINJOINT_COMPILE"
-STARTING = 0.05  # s of interpreting, of all modules, after which it is worth it to start the compiler up
-LOADING = 0.03  # s of interpreting after which it is sooner to load what is compiled
+_STARTING = 0.05  # s of interpreting, of all modules, after which it is worth it to start the compiler up
+_LOADING = 0.03  # s of interpreting after which it is sooner to load what is compiled
 SMALL = 50  # rods or discs up to which the interpreted form may well take all steps of a run before another is loaded
 LARGE = 300  # rods or discs from which on one step, interpreted, takes as long as a picture
 LONGEST_CALL = 0.05  # s, interpreted
 LONGEST_WORK = 2**15  # counted operations of a call that nothing divides: about as much, interpreted
-SECONDS_PER_BYTE = 2e-4  # of the interpreter's code, that compiling takes
+_SECONDS_PER_BYTE = 2e-4  # of the interpreter's code, that compiling takes
 
 
 class Choice:
@@ -170,7 +170,7 @@ class GeneratedModule:
                 self.load_or_tell()
             if self._form is None:
                 self._begin_interpreted()
-        elif self.spent > self._patience and Choice.spent > STARTING and not self._compiled:
+        elif self.spent > self._patience and Choice.spent > _STARTING and not self._compiled:
             self._lose_patience()
         return self._form
 
@@ -247,7 +247,7 @@ class GeneratedModule:
 
             return called
 
-        self._patience = LOADING
+        self._patience = _LOADING
         _interpreted.append(self)
         functions = {name: timed(function) for name, function in interpreted.items()}
         self._form = self._form_of(functions, is_machine=False)
@@ -279,7 +279,7 @@ class GeneratedModule:
 
     def expected_seconds(self) -> float:
         """How long compiling it will take, about."""
-        own = 0.0 if self._kept.exists() else SECONDS_PER_BYTE * self._size
+        own = 0.0 if self._kept.exists() else _SECONDS_PER_BYTE * self._size
         return own + sum(module.expected_seconds() for module in self._needs if not module.is_loaded)
 
     @cached_property

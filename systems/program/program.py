@@ -43,7 +43,7 @@ _ACTING = (
     ("particles.applied_force", "particles.applied_moment"),
     ("particles.reaction", "particles.reaction_moment"),
 )
-COLUMNS_OBSERVED = {  # by the parameter of observe() that they are
+_COLUMNS_OBSERVED = {  # by the parameter of observe() that they are
     **{f"rods_{name}": f"rods.{name}" for name in ("axial_force", "length", "strain")},
     "applied": "particles.applied_force",
     "reaction": "particles.reaction",
@@ -363,7 +363,7 @@ class Program:
     def _bind_observed(self) -> None:
         for path in _GIVEN.values():
             self.model.column(path)  # brings it up to date
-        storage = {name: self._storage(path) for name, path in COLUMNS_OBSERVED.items()}
+        storage = {name: self._storage(path) for name, path in _COLUMNS_OBSERVED.items()}
         self._acting = self._joined(_ACTING, 1.0 / self._arm)
         if self._writer.bends:
             storage |= zip(("applied", "reaction"), (c.whole for c in self._acting), strict=True)

@@ -82,7 +82,7 @@ TRIAL_STATE = "time, dt, *state"
 PREDICTED = "time, dt, displacement, predicted, *forces"
 RESISTED = "time, dt, displacement, velocity, resisting, direction"
 
-OF_PAIR = {  # what kernels of pairs are provided with
+_OF_PAIR = {  # what kernels of pairs are provided with
     "apart": "(x, y)",
     "drift": "(velocity[j, 0] - velocity[i, 0], velocity[j, 1] - velocity[i, 1])",
 }
@@ -279,7 +279,7 @@ class Writer:
     def _argument(self, b: Bound, parameter: str, index: str) -> str:
         """How a kernel's parameter is written inside the loop over its rows, or over pairs of particles i and j."""
         if parameter in PROVIDED:
-            return OF_PAIR.get(parameter, parameter)
+            return _OF_PAIR.get(parameter, parameter)
         if parameter in self.zeros:
             return self.zeros[parameter]
         if parameter in TURNING and self.bends:

@@ -15,14 +15,12 @@ from numpy.typing import NDArray
 from pinjoint.systems.base import Phase, System
 
 RATE = 22_050  # samples a second
-LASTS = 0.2  # s, of an impact's tone
-OF_A_KILOGRAM = (
+_OF_A_KILOGRAM = (
     660.0  # Hz, of the impact of 1 kg; heavier ones sound lower, by the fourth root of the mass, as plates do
 )
 LOWEST, HIGHEST = 90.0, 2500.0  # Hz
-AT_A_TIME = 3  # impacts of a frame that are heard, the strongest
+_AT_A_TIME = 3  # impacts of a frame that are heard, the strongest
 AGAIN = 1.0  # s after which the same event is heard again
-UNHEARD = 1e-3  # of the strongest impulse of the run: contacts that come to rest
 # Of other events: from and to which frequency the tone glides (Hz), how long it lasts (s), and its share of noise.
 TONES = {
     "yield": (240.0, 170.0, 0.3, 0.25),
@@ -90,14 +88,14 @@ class PygameSound(System):
             return
         impulse = impacts.impulse[since:]
         self._strongest = max(self._strongest, float(impulse.max()))
-        for number in np.argsort(impulse)[: -AT_A_TIME - 1 : -1].tolist():
+        for number in np.argsort(impulse)[: -_AT_A_TIME - 1 : -1].tolist():
             loudness = float(impulse[number]) / max(self._strongest, 1e-300)
-            if loudness > UNHEARD:
+            if loudness > 1e-3:  # of the strongest; else contacts that come to rest
                 met = [int(row[since + number]) for row in (impacts.first, impacts.second)]
                 lighter = min(float(mass[row]) for row in met if row < len(mass))
-                pitch = min(max(OF_A_KILOGRAM * lighter**-0.25, LOWEST), HIGHEST)
+                pitch = min(max(_OF_A_KILOGRAM * lighter**-0.25, LOWEST), HIGHEST)
                 pitch = 440.0 * 2.0 ** (round(12.0 * math.log2(pitch / 440.0)) / 12.0)  # so that few are made
-                yield (pitch, pitch, LASTS, 0.1), math.sqrt(loudness)
+                yield (pitch, pitch, 0.2, 0.1), math.sqrt(loudness)  # s that it lasts, and begins
 
     def _play(self, heard: tuple[float, ...], loudness: float) -> None:
         if not pygame.mixer.get_init():

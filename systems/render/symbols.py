@@ -23,13 +23,13 @@ from pinjoint.systems.render.marks import Points, Stamps
 Part = tuple[str, tuple[float, ...]]
 Parts = list[tuple[str, Points]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
 
-STROKE = 1.8  # the width of lines of icons
+_STROKE = 1.8  # the width of lines of icons
 _NUMBERS = {"disc": 3, "arc": 5}  # of one part; lines and areas have two for each of their points
 SUPPORT_DEPTH = 25.0  # points from the particle's rim to the far side of the ground
 RIM = 1.75  # points
 _HALF_WIDTH, _HEIGHT = 9.5, 16.0  # points, of a support's triangle
 _GROUND = 13.0  # points, half the length of the ground under it
-_COILED = 9.0  # units of STROKE, the radius of a coiled spring
+_COILED = 9.0  # units of _STROKE, the radius of a coiled spring
 _SQUARE = 9.5  # points, half the side of a square around a joint that cannot turn
 
 
@@ -100,9 +100,9 @@ def _icon_part(kind: str, numbers: tuple[float, ...]) -> list[Points]:
 def _thick(points: Points) -> list[Points]:
     """The polygons of a line through points (n, 2)."""
     along = points[1:] - points[:-1]
-    across = along[:, ::-1] * [-1.0, 1.0] / np.hypot(*along.T)[:, None] * (STROKE / 2)
+    across = along[:, ::-1] * [-1.0, 1.0] / np.hypot(*along.T)[:, None] * (_STROKE / 2)
     sides = [points[:-1] + across, points[1:] + across, points[1:] - across, points[:-1] - across]
-    return [*np.stack(sides, axis=1), *(circle(STROKE / 2) + point for point in points)]
+    return [*np.stack(sides, axis=1), *(circle(_STROKE / 2) + point for point in points)]
 
 
 def circle(radius: float) -> Points:

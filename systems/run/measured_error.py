@@ -16,13 +16,13 @@ from pinjoint.systems.program.entries import SMALLEST_ENERGY
 from pinjoint.systems.program.program import Program
 from pinjoint.systems.run.simulation import STUCK, Simulation
 
-FINER_TOLERANCE = 1e-2  # of the run's, by which it is taken again where the error is controlled
+_FINER_TOLERANCE = 1e-2  # of the run's, by which it is taken again where the error is controlled
 FINEST_TOLERANCE = 1e-13
 OF_BENDING = "rotation", "bending_moment"
-PIECES = 64  # parts of a run at whose ends the quantities are compared
+_PIECES = 64  # parts of a run at whose ends the quantities are compared
 MOST_STEPS = 16  # times those of the run, in which it is taken again: methods of order 3 need 5 times as many
-MOST_CREATED = 10.0  # of all energy supplied; Verlet creates 4 times as much at 0.9 of its stable step
-MOST_LOST = 0.25  # of it; more: finer steps lose much, too, and agree on what is wrong
+_MOST_CREATED = 10.0  # of all energy supplied; Verlet creates 4 times as much at 0.9 of its stable step
+_MOST_LOST = 0.25  # of it; more: finer steps lose much, too, and agree on what is wrong
 # Evaluations of the forces of rods up to which the error is measured without being asked for:
 IN_A_FRAME, IN_A_COMMAND = 5_000_000, 60_000_000  # about 0.2 s and 3 s
 
@@ -73,7 +73,7 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     met = clock.collisions > then["clock.collisions"][0] or clock.collision_state is not None
     meaningless = met or simulation.program.watches_events or simulation.integrator.exact
     lost = clock.largest_imbalance / max(clock.energy_scale, SMALLEST_ENERGY)
-    coarse = not -MOST_CREATED <= lost <= MOST_LOST
+    coarse = not -_MOST_CREATED <= lost <= _MOST_LOST
     coarse |= simulation.note == STUCK or simulation.step_size.unstable  # the energy may be right
     if meaningless or coarse or not clock.time > then["clock.time"][0]:
         return None
@@ -83,7 +83,7 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     yielded = clock.dissipated_plastic > then["clock.dissipated_plastic"][0]
     with simulation.aside(beginning):
         if program.tolerance > 0.0:
-            largest, factor = _by_tolerance(program, target, MOST_STEPS * max(steps, PIECES)), 1.0
+            largest, factor = _by_tolerance(program, target, MOST_STEPS * max(steps, _PIECES)), 1.0
         else:
             largest = _by_steps(simulation, program, target, size)
             order = 1 if yielded and not program.integrator.controlled else program.integrator.order
@@ -115,7 +115,7 @@ def _sizes(quantities: Iterable[Column]) -> Column:
 def _by_tolerance(program: Program, target: float, most: int) -> Column:
     """Run to a time with a hundredth of the tolerance and half the longest step; returns as _pieces does."""
     tolerance = program.tolerance
-    program.tolerance = max(FINER_TOLERANCE * tolerance, FINEST_TOLERANCE)
+    program.tolerance = max(_FINER_TOLERANCE * tolerance, FINEST_TOLERANCE)
     program.model.writable("clock.step_limit")[0] *= 0.5
     try:
         return _pieces(program, target, most) if program.tolerance < 0.2 * tolerance else _UNKNOWN
@@ -128,7 +128,7 @@ def _by_steps(simulation: Simulation, program: Program, target: float, size: flo
     clock = program.model.clock
     steps = math.ceil(2.0 * (target - clock.time) / size * (1.0 - 1e-9))
     simulation.step_size.begin((target - clock.time) / steps)
-    largest, piece = _sizes(_quantities(program)), -(-steps // PIECES)
+    largest, piece = _sizes(_quantities(program)), -(-steps // _PIECES)
     while steps > 0:
         taken, _ = program.advance(min(piece, steps))
         if taken == 0:
@@ -144,7 +144,7 @@ def _pieces(program: Program, target: float, most: int) -> Column:
     Returns the largest quantities at the ends of pieces; not numbers if it did not get there in `most` steps.
     """
     clock, largest = program.model.clock, _sizes(_quantities(program))
-    for end in np.linspace(clock.time, target, PIECES + 1)[1:].tolist():
+    for end in np.linspace(clock.time, target, _PIECES + 1)[1:].tolist():
         while (before := clock.time) < end:
             taken, _ = program.advance(min(most, REVIEW_INTERVAL), end, end)
             most -= taken

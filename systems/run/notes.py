@@ -7,12 +7,12 @@ from pinjoint.components.language import marked, plural, tr
 from pinjoint.systems.program.entries import SMALLEST_ENERGY
 
 TOLD_OVERLAP = 2e-3  # of a radius; smaller: tells of piles of like discs, too, whose steps leave up to 1.3e-3
-TOLD_SHARE = 0.1  # of all energy ever supplied; smaller: warns of lattices by automatic steps of Verlet
+_TOLD_SHARE = 0.1  # of all energy ever supplied; smaller: warns of lattices by automatic steps of Verlet
 
 
 def energy_warning(imbalance: float, scale: float) -> str:
     """The sentence that steps lost (positive) or created this energy (J); "" if it is a small part of all supplied."""
-    if not abs(imbalance) > TOLD_SHARE * scale + SMALLEST_ENERGY:
+    if not abs(imbalance) > _TOLD_SHARE * scale + SMALLEST_ENERGY:
         return ""
     share = abs(imbalance) / max(scale, SMALLEST_ENERGY)
     lost = marked(

@@ -24,7 +24,7 @@ from pinjoint.systems.program.reordered import make_program
 from pinjoint.systems.program.writer import kind_of
 from pinjoint.systems.schedule import Plan, Schedule
 
-FREE_FLIGHT = FreeFlight()
+_FREE_FLIGHT = FreeFlight()
 
 Dynamics = Program | Flight  # what moves a model: forces and energies by the systems of its plan
 
@@ -66,7 +66,7 @@ class Programs:
         """All systems that run in the scene with the model, the integrator among them, and why the others do not."""
         found = self._schedule.plan(self.scene, self._model)
         phases, left_out = dict(found.phases), dict(found.left_out)
-        for integrator in (*INTEGRATORS.values(), FREE_FLIGHT):
+        for integrator in (*INTEGRATORS.values(), _FREE_FLIGHT):
             if not self._schedule.is_active(integrator, self.scene):
                 left_out[integrator.name] = self._schedule.inactive(integrator, self.scene)
             elif integrator is self.integrator:
@@ -97,7 +97,7 @@ class Programs:
     def integrator(self) -> Integrator:
         """Exact flight if every system of the plan leaves it exact, else the integrator."""
         if self._integrator is None:
-            self._integrator = FREE_FLIGHT if self._is_exact else self._chosen
+            self._integrator = _FREE_FLIGHT if self._is_exact else self._chosen
         return self._integrator
 
     @property

@@ -11,11 +11,11 @@ from pinjoint.systems.physics.pace import natural_pace
 from pinjoint.systems.program.compiler import Choice, Unfinished
 from pinjoint.systems.run.simulation import Simulation
 
-LONGEST_FRAME = 0.1  # s of real time that one frame may catch up
+_LONGEST_FRAME = 0.1  # s of real time that one frame may catch up
 BUDGET = 0.012  # s of a frame that steps may take
 LONGEST_STEP = 0.02  # s after which a frame leaves a step in its midst, where that is possible
 AT_ONCE = 0.003  # s for which steps are planned at once
-GROWTH = 8  # times as many steps at once, at most, as have ever been taken at once at what they cost now
+_GROWTH = 8  # times as many steps at once, at most, as have ever been taken at once at what they cost now
 FASTEST, SLOWEST = 1e3, 1e-5  # simulated seconds per second shown, times the natural pace at 1
 MANY, SHARE = 2000, 0.1  # above MANY elements, a change of their number by a smaller share keeps the pace
 SHORT = 0.125  # share of a frame that is left to the next where steps are as short: whole steps are shown
@@ -58,7 +58,7 @@ class TimeScale:
 
     def due(self, elapsed: float) -> float:
         """Simulated time (s) to let pass in a frame that took `elapsed` seconds."""
-        return min(elapsed, LONGEST_FRAME) * self.pace
+        return min(elapsed, _LONGEST_FRAME) * self.pace
 
     def forget_cost(self) -> None:
         """Steps may cost another thing from now on: interpreted ones a hundred times as much as compiled ones."""
@@ -71,7 +71,7 @@ class TimeScale:
         Impacts make steps ten times as long from one moment to the next.
         """
         fitting = min(AT_ONCE, seconds) / max(self._seconds_per_step, 1e-9)
-        return int(min(fitting, GROWTH * self._most)) if self._most else 1
+        return int(min(fitting, _GROWTH * self._most)) if self._most else 1
 
     def cost(self, steps: int, seconds: float) -> None:
         """Learn what steps took that were taken at once."""

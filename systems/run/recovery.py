@@ -19,7 +19,7 @@ from pinjoint.systems.run.sleep import Sleep
 from pinjoint.systems.run.step_size import StepSize
 
 FAILURES = (StopReason.DIVERGED, StopReason.UNRESOLVED, StopReason.FAILED)
-MOST_HALVINGS = 6  # of an automatic step before a run is given up
+_MOST_HALVINGS = 6  # of an automatic step before a run is given up
 
 
 class Recovery:
@@ -82,10 +82,10 @@ class Recovery:
     def with_shorter_steps(self) -> bool:
         """Return to the good state and halve an automatic step, which proved too long as the geometry changed.
 
-        False if the step is not automatic, or was halved MOST_HALVINGS times already.
+        False if the step is not automatic, or was halved _MOST_HALVINGS times already.
         """
         chosen = self._model.settings.time_step is not None or self._programs.integrator.estimates_error
-        if chosen or self._halvings == MOST_HALVINGS:
+        if chosen or self._halvings == _MOST_HALVINGS:
             return False
         assert self.safe is not None
         size = self._model.clock.step_size

@@ -53,7 +53,6 @@ STUCK = marked(
     " steps damped the motion: it jumps between the same states, or is lost in rounding. Choose another time step."
 )
 
-KEPT_EVERY = 0.5  # s; as much of a run an interrupt loses
 WORK_AT_ONCE = 2**22  # steps × elements, after which a run that is watched looks up
 ENDS = (StopReason.REST, StopReason.DIVERGED)  # of a run
 
@@ -513,7 +512,7 @@ class Simulation:
 
         def look() -> int:
             nonlocal when
-            if not kept or monotonic() - when > KEPT_EVERY:
+            if not kept or monotonic() - when > 0.5:  # s; as much an interrupt loses
                 kept[:], when = [self.checkpoint()], monotonic()
             return max(WORK_AT_ONCE // (model.particles.count + model.rods.count + 1), 1)
 

@@ -17,16 +17,16 @@ from pinjoint.systems.physics.spectrum import Spectrum, spectrum
 from pinjoint.systems.run.programs import Programs
 from pinjoint.systems.run.sleep import Sleep
 
-SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
-ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square
-FIRST_SHARE = 0.1  # of 1/ω, the step at which error control begins
-CRAWLING = 1e-3  # of it: so much shorter ones under error control are told of
-FREE_STEP = 1e-3  # s, where nothing limits the step
-DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
-EIGENVALUE_ERROR = 1e-9  # of the highest frequency, and so of the largest stable step
+_SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
+_ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square
+_FIRST_SHARE = 0.1  # of 1/ω, the step at which error control begins
+_CRAWLING = 1e-3  # of it: so much shorter ones under error control are told of
+_FREE_STEP = 1e-3  # s, where nothing limits the step
+_DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
+_EIGENVALUE_ERROR = 1e-9  # of the highest frequency, and so of the largest stable step
 OBSERVED = 1.0 / 120.0  # s shown, at the natural pace, between two looks at exact flight or at what touches
 PASSED = 1e-4  # share of the time so far between two looks at exact flight, so that any time is reached in some steps
-DEFAULT_INTEGRATOR = "velocity_verlet"
+_DEFAULT_INTEGRATOR = "velocity_verlet"
 
 
 def begin_steps(model: Model, size: float) -> None:
@@ -120,20 +120,20 @@ class StepSize:
     def _first_controlled(self, found: Spectrum) -> float:
         """The step (s) at which error control begins."""
         fastest = max(found.frequency, 2.0 * found.decay)
-        first = FIRST_SHARE / fastest if fastest > 0.0 else FREE_STEP
+        first = _FIRST_SHARE / fastest if fastest > 0.0 else _FREE_STEP
         return _rounded_down(min(first, self._limit() or math.inf))
 
     def _limit(self) -> float:
         """The longest step (s) under error control, by stability; 0: nothing limits it."""
-        limit = SAFETY * self.stable
+        limit = _SAFETY * self.stable
         return _rounded_down(limit) if limit < math.inf else 0.0
 
     def _automatic(self, found: Spectrum) -> float:
         """The step (s) without error control."""
         if self.stable == 0.0:
-            return _rounded_down(min(DOUBTFUL_STEP / found.frequency, FREE_STEP))
-        share = ACCURATE if self._model.rods.count <= SMALL else SAFETY
-        longest = FREE_STEP
+            return _rounded_down(min(_DOUBTFUL_STEP / found.frequency, _FREE_STEP))
+        share = _ACCURATE if self._model.rods.count <= SMALL else _SAFETY
+        longest = _FREE_STEP
         if self._programs.integrator.exact:  # steps are only how often flight is looked at
             longest = min(
                 longest,
@@ -146,7 +146,7 @@ class StepSize:
         if self._controls_error:
             found = self.look_up()
             self._model.writable("clock.step_limit")[0] = self._limit()
-            if mean < CRAWLING * self._first_controlled(found):
+            if mean < _CRAWLING * self._first_controlled(found):
                 self.warning = tr(
                     "Forces change so fast that time steps of {step:.2g} s are needed, {count:.2g} for each simulated"
                     " second. Look for a law whose force becomes infinite, or that is much stiffer than the rods.",
@@ -170,7 +170,7 @@ class StepSize:
         return self._fixed is not None and self._is_unstable(self._fixed)
 
     def _is_unstable(self, size: float) -> bool:
-        return size >= self.stable * (1.0 - EIGENVALUE_ERROR)
+        return size >= self.stable * (1.0 - _EIGENVALUE_ERROR)
 
     def remedy(self, size: float | None) -> str:
         """The remedy for a run that is unstable with steps of this size (s), None: automatic."""
@@ -181,7 +181,7 @@ class StepSize:
                 "Without damping {integrator} is stable at no time step: choose the integrator {other}, or give the rods"
                 " damping.",
                 integrator=name,
-                other=DEFAULT_INTEGRATOR,
+                other=_DEFAULT_INTEGRATOR,
             )
         if size is not None and self._is_unstable(size):
             return tr(
@@ -195,10 +195,10 @@ class StepSize:
             return tr("Make the tolerance smaller.")
         if integrator.estimates_error:
             return tr("Set the time step to automatic, so that its error is controlled, or make it smaller.")
-        if integrator is not INTEGRATORS[DEFAULT_INTEGRATOR]:
+        if integrator is not INTEGRATORS[_DEFAULT_INTEGRATOR]:
             return tr(
                 "Make the time step smaller, or choose the integrator {integrator}.",
-                integrator=DEFAULT_INTEGRATOR,
+                integrator=_DEFAULT_INTEGRATOR,
             )
         return tr("Make the time step smaller.")
 

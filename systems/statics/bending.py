@@ -17,8 +17,8 @@ from pinjoint.components.arrays import ROUND_OFF, Array, Flags
 from pinjoint.components.derived import on_axis
 from pinjoint.components.model import Model
 
-UNLIMITED = 1e200  # kN·m, of ends without a plastic moment, with which one may compute
-SENSES = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)]  # in which both ends may flow
+_UNLIMITED = 1e200  # kN·m, of ends without a plastic moment, with which one may compute
+_SENSES = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)]  # in which both ends may flow
 WITHIN = 2.5  # −N L₀²/EI of one rod, up to which its cubic bends as compression makes it
 
 
@@ -276,10 +276,10 @@ def yielding(stiffness: Array, moment: Array, limit: Array) -> Array:
     found, rows = np.zeros_like(moment), np.flatnonzero((np.abs(moment) > limit).any(axis=1))
     if not len(rows):
         return found
-    stiffness, moment, limit = stiffness[rows], moment[rows], np.minimum(limit[rows], UNLIMITED)
+    stiffness, moment, limit = stiffness[rows], moment[rows], np.minimum(limit[rows], _UNLIMITED)
     senses, solved = np.zeros_like(moment), np.zeros(len(rows), dtype=bool)
     noise = 4.0 * ROUND_OFF * np.abs(moment).max(axis=1, initial=0.0, keepdims=True)
-    for sense in SENSES:
+    for sense in _SENSES:
         way = np.broadcast_to(sense, moment.shape)
         turned = flows(stiffness, moment - at_limits(way, limit), way != 0)
         left = np.abs(moment - (stiffness @ turned[:, :, None])[:, :, 0])

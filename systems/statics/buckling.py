@@ -36,15 +36,15 @@ from pinjoint.systems.statics.response import Response
 from pinjoint.systems.statics.state import Start, StaticState
 from pinjoint.systems.statics.theory import FULL, linear
 
-RESTARTS = 100
-LANCZOS = 40  # vectors that the lowest of larger structures are found from, at least
-MODES = 5
+_RESTARTS = 100
+_LANCZOS = 40  # vectors that the lowest of larger structures are found from, at least
+_MODES = 5
 # Of the work of compression on the member that does most: those that do less take no part in a mode.
 IDLE = 1e-6
-IN_LINE = 1e-6  # sine of the angle between rods, and share of their bending stiffness
+_IN_LINE = 1e-6  # sine of the angle between rods, and share of their bending stiffness
 NOTHING = 1e-10  # of the largest axial force, or of the largest eigenvalue: round-off
 # Of the rods' stiffness: by what tension is to hold a mechanism before it gives way.
-STIFFENED = 1e-6, 1e-8, 1e-10
+_STIFFENED = 1e-6, 1e-8, 1e-10
 STEP = 1e-5  # change of the rods, as a share, over which a derivative along the path of equilibria is taken
 STRAINED = 0.1  # strain at a critical factor above which no material is still elastic
 
@@ -80,7 +80,7 @@ class Buckling:
     coarse: bool = False
 
     @classmethod
-    def of(cls, model: Model, count: int = MODES, about: StaticState | Start | None = None) -> Buckling:
+    def of(cls, model: Model, count: int = _MODES, about: StaticState | Start | None = None) -> Buckling:
         """The lowest critical load factors of a model, its rods elastic, and the modes in which it gives way.
 
         about: an exact equilibrium under its load factor, from where the next critical ones are told; None: linear
@@ -198,7 +198,7 @@ def _resisting(model: Model, structure: Structure, stiffness: Matrix, softening:
     if not modes.shape[1]:
         return stiffness
     size = float(abs(softening.diagonal()).max(initial=0.0))
-    for share in STIFFENED if size > 0.0 else ():
+    for share in _STIFFENED if size > 0.0 else ():
         held = stiffness + share * float(weight.max()) / size * softening
         if regular(held, weight, -SOFT * share).definite:
             return held
@@ -251,10 +251,10 @@ def _largest(weight: Array, one: Matrix, other: Matrix, count: int) -> tuple[Arr
     from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
     inverse = LinearOperator(other.shape, matvec=Factor(other).solve, dtype=np.float64)
-    first, basis = pseudo_random(len(weight), 1)[:, 0], max(LANCZOS, 3 * count)
+    first, basis = pseudo_random(len(weight), 1)[:, 0], max(_LANCZOS, 3 * count)
     try:
         found: tuple[Array, Array] = eigsh(
-            one, count, M=other, Minv=inverse, which="LA", v0=first, ncv=basis, maxiter=RESTARTS
+            one, count, M=other, Minv=inverse, which="LA", v0=first, ncv=basis, maxiter=_RESTARTS
         )
     except ArpackNoConvergence as end:
         found = end.eigenvalues, end.eigenvectors
@@ -300,8 +300,8 @@ def members(model: Model) -> Rows:
     one, other = order[free[ends.ravel()[order]]].reshape(-1, 2).T  # both ends of rods at such joints
     cross = axis[one // 2, 0] * axis[other // 2, 1] - axis[one // 2, 1] * axis[other // 2, 0]
     stiffness = rods.bending_stiffness
-    same = (np.abs(cross) < IN_LINE) & rigid.ravel()[one] & rigid.ravel()[other]
-    same &= np.isclose(stiffness[one // 2], stiffness[other // 2], rtol=IN_LINE)
+    same = (np.abs(cross) < _IN_LINE) & rigid.ravel()[one] & rigid.ravel()[other]
+    same &= np.isclose(stiffness[one // 2], stiffness[other // 2], rtol=_IN_LINE)
     pairs = np.stack([one[same] // 2, other[same] // 2], axis=1)
     return lowest_joined(rods.count, pairs)
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from pinjoint.components.arrays import Array, Flags
 
-ENUMERATED = 10  # rods up to which all sets are tried if pivoting does not end
-PIVOTS = 200
+_ENUMERATED = 10  # rods up to which all sets are tried if pivoting does not end
+_PIVOTS = 200
 
 
 def yielding_set(matrix: Array, growth: Array, guess: Flags) -> Flags | None:
@@ -30,8 +30,8 @@ def yielding_set(matrix: Array, growth: Array, guess: Flags) -> Flags | None:
 
 
 def yielding_sets(matrix: Array, growth: Array, guess: Flags) -> Iterator[Flags]:
-    """All sets that solve the problem, the largest first; of more than ENUMERATED rods those that pivoting finds."""
-    if len(growth) <= ENUMERATED:
+    """All sets that solve the problem, the largest first; of more than _ENUMERATED rods those that pivoting finds."""
+    if len(growth) <= _ENUMERATED:
         trials = (np.array(trial, dtype=bool) for trial in product([True, False], repeat=len(growth)))
         yield from (trial for trial in trials if not _violations(matrix, growth, trial).any())
     else:
@@ -44,7 +44,7 @@ def yielding_sets(matrix: Array, growth: Array, guess: Flags) -> Iterator[Flags]
 def _pivoted(matrix: Array, growth: Array, guess: Flags) -> Flags | None:
     """The set that principal pivoting finds from a guess, if it ends."""
     chosen = guess.copy()
-    for _ in range(PIVOTS):
+    for _ in range(_PIVOTS):
         wrong = _violations(matrix, growth, chosen)
         if not wrong.any():
             return chosen

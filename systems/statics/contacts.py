@@ -20,18 +20,18 @@ from pinjoint.systems.statics.factor import is_stable
 from pinjoint.systems.statics.follow import Path, Point
 from pinjoint.systems.statics.relax import BALANCED, creep, has_run_away
 
-CONTACT_STRAIN = 1e-3  # of a contact under the largest load, before it is lengthened
-SHORTEST_MOVE = 0.25  # of its radius: the travel of a disc in a step, whatever is near
-LONGEST_MOVE = 0.45  # of its distance from the nearest other: the same elsewhere
+_CONTACT_STRAIN = 1e-3  # of a contact under the largest load, before it is lengthened
+_SHORTEST_MOVE = 0.25  # of its radius: the travel of a disc in a step, whatever is near
+_LONGEST_MOVE = 0.45  # of its distance from the nearest other: the same elsewhere
 # Of the sum of radii, or of a side: a gap, an overlap or a distance from its end that is round-off.
-TOUCHING = 1e-12
-NEARLY_TOUCHING = 1e-9  # the same, where lengthening no longer lessens it
-MOST_PAIRS = 10**6  # between which distances are measured; above, nodes of structures move SHORTEST_MOVE
+_TOUCHING = 1e-12
+_NEARLY_TOUCHING = 1e-9  # the same, where lengthening no longer lessens it
+_MOST_PAIRS = 10**6  # between which distances are measured; above, nodes of structures move _SHORTEST_MOVE
 STIFF = 1e-4  # overlap, of the sum of radii, below which contacts need not become stiffer
-STIFFER = 10.0
-NEAR_REST = 0.1  # of the largest force, unbalanced: from here on an equilibrium is sought
+_STIFFER = 10.0
+_NEAR_REST = 0.1  # of the largest force, unbalanced: from here on an equilibrium is sought
 MOST_STEPS = 1000  # the pile of 60 stones takes 280
-SMALLEST_PENALTY = 1e-9  # of the stiffness: hardly any damping
+_SMALLEST_PENALTY = 1e-9  # of the stiffness: hardly any damping
 
 
 @dataclass(frozen=True)
@@ -119,17 +119,17 @@ class Discs:
     def touching(self, displacement: Array) -> Rows:
         """Pairs (k, 2) that overlap by more than round-off."""
         pairs = self.near(displacement, np.zeros(len(self.radius)))
-        return pairs[self.gap(displacement, pairs) < -TOUCHING * self.radius[pairs].sum(axis=1)]
+        return pairs[self.gap(displacement, pairs) < -_TOUCHING * self.radius[pairs].sum(axis=1)]
 
     def moves(self, displacement: Array) -> Array:
         """The distance (m) that each body may move, (N,), before the next search for contacts."""
-        moves, total = SHORTEST_MOVE * self.radius, len(self.radius)
+        moves, total = _SHORTEST_MOVE * self.radius, len(self.radius)
         free = np.flatnonzero(self.movable.any(axis=1))
-        free = free if len(free) * total <= MOST_PAIRS else np.flatnonzero(self.is_alone)
+        free = free if len(free) * total <= _MOST_PAIRS else np.flatnonzero(self.is_alone)
         pairs = np.column_stack([np.repeat(free, total), np.tile(np.arange(total), len(free))])
         gaps = self.gap(displacement, pairs).reshape(len(free), total)
         gaps[np.arange(len(free)), free] = np.inf
-        moves[free] = np.maximum(moves[free], LONGEST_MOVE * gaps.min(axis=1, initial=np.inf))
+        moves[free] = np.maximum(moves[free], _LONGEST_MOVE * gaps.min(axis=1, initial=np.inf))
         moves[self._count :] = np.inf
         return moves
 
@@ -154,8 +154,8 @@ class Discs:
         place = self._place(displacement)
         along = ((place[pairs[:, 0]] + line - self.start[pairs[:, 1]]) * span).sum(axis=1)
         squared = (span * span).sum(axis=1)
-        beyond = along >= squared * (1.0 - TOUCHING)
-        flat = (along > TOUCHING * squared) & (squared > 0.0) & ~beyond
+        beyond = along >= squared * (1.0 - _TOUCHING)
+        flat = (along > _TOUCHING * squared) & (squared > 0.0) & ~beyond
         way = way + beyond[:, None] * span
         length = np.hypot(*line.T)
         turned = np.column_stack([-span[:, 1], span[:, 0]])
@@ -172,10 +172,10 @@ class Sinking:
 
     def __init__(self, structure: Structure, discs: Discs, load: Array, start: Point, share: float) -> None:
         self.scale = structure.largest(load) or 1.0
-        own = self.scale / CONTACT_STRAIN * discs.is_alone / np.where(discs.is_alone, discs.radius, 1.0)
+        own = self.scale / _CONTACT_STRAIN * discs.is_alone / np.where(discs.is_alone, discs.radius, 1.0)
         unknown = np.column_stack([discs.movable, structure.unknown[:, 2:]])
         self.bare = replace(structure, unknown=unknown, own_weight=own)
-        self.discs, self.load, self.stiffness = discs, load, self.scale / CONTACT_STRAIN
+        self.discs, self.load, self.stiffness = discs, load, self.scale / _CONTACT_STRAIN
         self.pairs, self.lengthened = np.zeros((0, 2), dtype=np.intp), np.zeros(0)
         self.way, self.axis, self.flat = discs.axes(start.displacement, self.pairs)
         self.shares = share, share
@@ -194,12 +194,12 @@ class Sinking:
             rested = self._rested(moves)
             if rested:
                 gap = self._gap()
-                if gap <= TOUCHING or (gap >= 0.5 * worst and gap <= NEARLY_TOUCHING):
+                if gap <= _TOUCHING or (gap >= 0.5 * worst and gap <= _NEARLY_TOUCHING):
                     return rested
                 if gap > STIFF:
-                    if self.stiffness * TOUCHING > self.scale:  # what is stiffer is hardly less shortened
+                    if self.stiffness * _TOUCHING > self.scale:  # what is stiffer is hardly less shortened
                         break
-                    self.stiffness *= STIFFER
+                    self.stiffness *= _STIFFER
                     self._use(self.lengthened)
                 else:
                     worst = min(gap, worst)
@@ -280,7 +280,7 @@ class Sinking:
         if (pulled & ~borne).any():
             return ""
         structure = self.path.structure
-        if structure.greatest(self._residual()) > NEAR_REST * self.path.scale:
+        if structure.greatest(self._residual()) > _NEAR_REST * self.path.scale:
             return ""
         found = self.path.correct(self.point, self.point.displacement, 0.0, None)
         if found is None or (_travel(found.displacement, self.point.displacement) > moves).any():
@@ -304,7 +304,7 @@ class Sinking:
         if penalty == 0.0:
             pace = structure.spread(residual / structure.weight)
             penalty = float((np.hypot(*pace[:, :2].T) / moves).max(initial=0.0))
-        penalty = max(penalty, SMALLEST_PENALTY)
+        penalty = max(penalty, _SMALLEST_PENALTY)
         crept = creep(
             self.path, self.point, residual, penalty, lambda to: float((_travel(to, start) / moves).max())
         )

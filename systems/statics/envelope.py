@@ -40,7 +40,7 @@ from pinjoint.systems.statics.theory import FirstOrder
 _REFINEMENTS = 10  # of solutions, at most
 _KNOWN = ROUND_OFF**0.5  # of a solution: after a refinement by less, what is left is round-off
 _STATIONS = np.linspace(0.0, 1.0, 21)  # along each rod, besides those where something jumps or is largest
-POSITIONS = (
+_POSITIONS = (
     40  # along each rod of a path, beside its start: forces largest between them are told up to 0.1 % less
 )
 _BESIDE = 1e-9  # of the length of a rod, from its ends: there shear forces beside supports are largest
@@ -291,7 +291,7 @@ class Envelope:
         stands."""
         copy, rows = model.undeformed_copy(), [model.rods[name].row for name in path]
         copy.delete([*copy.loads, *copy.span_loads])
-        length, shares = model.rods.original_length[rows], np.linspace(0.0, 1.0, POSITIONS + 1)
+        length, shares = model.rods.original_length[rows], np.linspace(0.0, 1.0, _POSITIONS + 1)
         places = np.outer(length, np.clip(shares, _BESIDE, 1.0 - _BESIDE)).ravel()
         cases, on = [str(number) for number in range(len(places))], np.repeat(rows, len(shares))
         force = 0.0, -float(model.settings.moving_force)

@@ -34,7 +34,6 @@ if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix
 
 
-AXES = ("x", "y", "rotation")  # of a particle
 TURNS_ONLY = 1e-9  # m/rad: a motion that shifts particles by less is one of rotations
 MOST_ITERATIONS = 60  # for the axial force of a rod with plastic hinges
 UNBALANCED = 1e-13  # of the largest force, by the length of a rod: a moment that is round-off

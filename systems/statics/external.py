@@ -19,7 +19,7 @@ from pinjoint.systems.statics.equations import Structure
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.explain import listed
 
-NO_NET_FORCE = 1e-12  # of the sum of a body's forces: a smaller net force is round-off
+_NO_NET_FORCE = 1e-12  # of the sum of a body's forces: a smaller net force is round-off
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def loose_bodies(structure: Structure, load: Array) -> list[LooseBody]:
         held = np.bincount(structure.body, holds, count) > 0
         net = np.bincount(structure.body, load[:, axis], count)
         gross = np.bincount(structure.body, np.abs(load[:, axis]), count)
-        pulled = np.abs(net) > NO_NET_FORCE * gross
+        pulled = np.abs(net) > _NO_NET_FORCE * gross
         for body in np.flatnonzero(~held & (pulled | (members > 1))).tolist():
             rows = np.flatnonzero(structure.body == body)
             found.append(LooseBody(rows, axis, float(net[body]) if pulled[body] else 0.0))

@@ -20,12 +20,12 @@ from pinjoint.systems.statics.relax import LARGEST_PLASTIC_ROTATION, RUNAWAY, ST
 from pinjoint.systems.statics.response import of_axes, of_rods
 
 BEYOND = 1e-6  # of the change of load, by which a jump begins beyond a loss of stability
-FIRST_LOAD = 1 / 64  # of the change of load, under which a first-order mechanism takes its shape
-UNEXCITED = 1e-6  # share of a mode in the response to the load, below which the load does not excite it
+_FIRST_LOAD = 1 / 64  # of the change of load, under which a first-order mechanism takes its shape
+_UNEXCITED = 1e-6  # share of a mode in the response to the load, below which the load does not excite it
 STALLED = 0.05  # of a rod's length: a shorter jump counts as a stall
-MOST_STALLS = 2
+_MOST_STALLS = 2
 PASSING = 1000  # steps of relaxing under hardly more load before the whole load is tried
-MOST_INCREMENTS = 20000
+_MOST_INCREMENTS = 20000
 
 
 @dataclass
@@ -53,7 +53,7 @@ class Loading:
         """The equilibrium at the end of the change. Raises NoEquilibrium; `point` is the last good one."""
         tangent = self._begin()
         increment = np.inf
-        for _ in range(MOST_INCREMENTS):
+        for _ in range(_MOST_INCREMENTS):
             if self.point.t >= 1.0:
                 return self.path.polished(self.point)
             self._note_cables(tangent)
@@ -90,7 +90,7 @@ class Loading:
             else:
                 self.point = found
         elif not tangent.stable or self._unresisted(tangent):
-            self._relax(FIRST_LOAD if self.unstressed else 1.0, None)
+            self._relax(_FIRST_LOAD if self.unstressed else 1.0, None)
         if self.mechanism:
             slack, places = path.branches(before.response).slack, (before.displacement, self.point.displacement)
             event = first_order_mechanism(self.model, self.factor(0.0), structure.fields(modes), slack, *places)
@@ -210,14 +210,14 @@ class Loading:
         mode = self._mode(beyond)
         if plastic and structure.ends_yield and self._is_plastic_mechanism(beyond):
             raise self._collapse(beyond.flowing, structure.spread(mode))
-        if self.mechanism and critical.t < FIRST_LOAD and not plastic:
-            self._relax(FIRST_LOAD, mode)
+        if self.mechanism and critical.t < _FIRST_LOAD and not plastic:
+            self._relax(_FIRST_LOAD, mode)
         else:
             self._pass(critical, beyond, mode, plastic)
         change = path.structure.gather(self.point.displacement - critical.displacement)
         if path.structure.move(change, critical.response) < STALLED:
             self.stalls += 1
-        if self.stalls > MOST_STALLS:
+        if self.stalls > _MOST_STALLS:
             self._leap()
         return path.tangent(self.point)
 
@@ -261,7 +261,7 @@ class Loading:
         push = self.path.push(response)
         pushed = float(mode @ push)
         lean = float(flow.sum()) if flow.any() else pushed
-        if abs(pushed) <= UNEXCITED * np.linalg.norm(mode) * np.linalg.norm(push):
+        if abs(pushed) <= _UNEXCITED * np.linalg.norm(mode) * np.linalg.norm(push):
             lean = float(mode[np.abs(mode).argmax()]) if not beyond.flowing.any() else lean
         return mode if lean >= 0.0 else -mode
 
@@ -287,7 +287,7 @@ class Loading:
         push = self.path.push(critical.response)
         share = abs(float(mode @ push)) / (np.linalg.norm(mode) * np.linalg.norm(push))
         where = moved(self.model, critical.displacement, self.point.displacement)
-        if beyond.sense > 0.0 and share < UNEXCITED:
+        if beyond.sense > 0.0 and share < _UNEXCITED:
             kind = "bifurcation"
             message = marked(
                 "Bifurcation: the equilibrium becomes unstable {at}, and the structure buckles to the next stable one:"

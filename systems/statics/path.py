@@ -18,9 +18,10 @@ from pinjoint.components.arrays import Array
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
+from pinjoint.components.particle import AXES
 from pinjoint.components.theory import EXACT
 from pinjoint.components.wording import brief, cut, missing
-from pinjoint.systems.statics.equations import AXES, SOFT, Structure, normalised, upright
+from pinjoint.systems.statics.equations import SOFT, Structure, normalised, upright
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External
@@ -30,14 +31,14 @@ from pinjoint.systems.statics.loading import hinges_formed
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import StaticState
 
-DETAIL = 0.02  # of a rod's length between points; smaller: a smoother curve
+_DETAIL = 0.02  # of a rod's length between points; smaller: a smoother curve
 FIRST = 1e-3  # of the same, for the first increment
-LANDED = 1e-13  # of the goal, or of the last increment: near enough
+_LANDED = 1e-13  # of the goal, or of the last increment: near enough
 LIMIT_POINT, BIFURCATION, COLLAPSE = marked("limit point"), marked("bifurcation"), marked("collapse")
-SHARPNESS = 1e-10  # of an increment, to which a critical point is found in it
+_SHARPNESS = 1e-10  # of an increment, to which a critical point is found in it
 MOST_TRIALS = 200  # to find a goal, or a critical point, within an increment
-ALONG = 0.5  # of the first increment on a branch: one that goes less far along its mode fell back
-SMALLEST_BRANCH = 1e-5  # of a rod's length: the least first increment on a branch
+_ALONG = 0.5  # of the first increment on a branch: one that goes less far along its mode fell back
+_SMALLEST_BRANCH = 1e-5  # of a rod's length: the least first increment on a branch
 
 
 @dataclass(frozen=True)
@@ -117,7 +118,7 @@ class Curve:
         goal: Goal,
         *,
         points: int = 500,
-        detail: float = DETAIL,
+        detail: float = _DETAIL,
         branch: int = 0,
         theory: str = EXACT,
     ) -> Curve:
@@ -213,13 +214,13 @@ class _Critical:
         mode = mode * (side / structure.move(mode, start.response))
         across = replace(self.tangent, rate=mode * (path.reference / path.size(mode)))
         size = first
-        while size > SMALLEST_BRANCH:
+        while size > _SMALLEST_BRANCH:
             guess = start.displacement + structure.spread(size * mode)
             found = path.correct(start, guess, start.t, across)
             if found is not None:
                 change = structure.gather(found.displacement - start.displacement)
                 along = (structure.measure * change) @ (structure.measure * mode) / path.size(mode) ** 2
-                if along >= ALONG * size:
+                if along >= _ALONG * size:
                     return Step(found, path.tangent(found, start, self.tangent), size, size)
             size *= HALF
         return None
@@ -327,7 +328,7 @@ class _Search:
             """The last point of the step that is not beyond, and its tangent, to rounding."""
             found, size = (point, tangent), 0.5 * step.taken
             for _ in range(MOST_TRIALS):
-                if size <= SHARPNESS * step.taken:
+                if size <= _SHARPNESS * step.taken:
                     break
                 trial = path.attempt(*found, size)
                 if isinstance(trial, tuple) and not beyond(*trial):
@@ -345,7 +346,7 @@ class _Search:
         """The last increment shortened so that it ends at the goal, by the secant method with bisection."""
         low, high = (0.0, self.beyond(last[0])), (step.taken, self.beyond(step.point))
         for trial in range(MOST_TRIALS):
-            if abs(high[1]) <= LANDED * abs(self.goal.value) or high[0] - low[0] <= LANDED * step.taken:
+            if abs(high[1]) <= _LANDED * abs(self.goal.value) or high[0] - low[0] <= _LANDED * step.taken:
                 break
             share = low[1] / (low[1] - high[1]) if trial % 3 < 2 else 0.5
             increment = low[0] + share * (high[0] - low[0])

@@ -20,16 +20,16 @@ from pinjoint.systems.statics.follow import LARGEST_MOVE, NEWTON_ITERATIONS, SMA
 
 STEPS = 4000  # at most
 STALLED = 50  # steps that together go less far than one may: it is caught where its rods turn over
-AIMED = 0.7  # of the longest step
-STEP_CONVERGED = 1e-7  # of the force at its start
-LARGEST_PENALTY = 1e9
+_AIMED = 0.7  # of the longest step
+_STEP_CONVERGED = 1e-7  # of the force at its start
+_LARGEST_PENALTY = 1e9
 NUDGE = 1e-3  # of a rod's length: how far to push off an unstable equilibrium
 BALANCED = 1e-9  # of the largest force: what is left over in an equilibrium, be it unstable
 LARGEST_PLASTIC_STRAIN = 0.1  # gained on the way; what is beyond is no result: structural metal tears before
 # Rad: where what yields is as long as it is deep, its edges strain by half of that.
 LARGEST_PLASTIC_ROTATION = 0.25
 RUNAWAY = 100.0  # times the structure's extent: a displacement without end
-ROUND_AND_ROUND = 30.0  # rad: a rotation without end
+_ROUND_AND_ROUND = 30.0  # rad: a rotation without end
 
 
 def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STEPS) -> tuple[Point, str]:
@@ -81,7 +81,7 @@ def torn(gained: Array) -> Flags:
 def has_run_away(structure: Structure, displacement: Array, start: Array) -> bool:
     """True if a motion to these displacements has no end, be it that it goes far or round and round."""
     moved = displacement - start
-    return largest(moved[:, :2]) > RUNAWAY * structure.extent or largest(moved[:, 2:]) > ROUND_AND_ROUND
+    return largest(moved[:, :2]) > RUNAWAY * structure.extent or largest(moved[:, 2:]) > _ROUND_AND_ROUND
 
 
 def _travel(structure: Structure, point: Point, displacement: Array, longest: float = 1.0) -> float:
@@ -108,20 +108,20 @@ def creep(
     The step is shortened until its travel is at most 1: travel(displacement) is the share of the longest step.
     """
     given = penalty
-    while penalty < LARGEST_PENALTY:
+    while penalty < _LARGEST_PENALTY:
         displacement = implicit_step(path, point, residual, penalty)
         share = math.inf if displacement is None else travel(displacement)
         if displacement is not None and share <= 1.0:
             least = 0.25 if penalty == given else 1.0
-            return path.after(point, displacement, point.t), penalty * max(share / AIMED, least)
-        penalty *= min(share / AIMED, 3.0)
+            return path.after(point, displacement, point.t), penalty * max(share / _AIMED, least)
+        penalty *= min(share / _AIMED, 3.0)
     return None
 
 
 def implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> Array | None:
     """Displacements u with force − internal(u) = penalty × W (u − u₀), or None if Newton's method fails."""
     structure = path.structure
-    wanted = STEP_CONVERGED * structure.greatest(residual)
+    wanted = _STEP_CONVERGED * structure.greatest(residual)
     moved, step = np.zeros(structure.size), np.zeros(structure.size)
     before, share, soft = np.inf, 1.0, point.response.soft
     for _ in range(NEWTON_ITERATIONS):

@@ -23,10 +23,10 @@ from pinjoint.systems.statics.state import STABLE, Start, StaticState
 _REFINEMENTS = 4  # of a linear solution
 _REFINEMENTS_OF_BENDING = 40  # at most; few unless hundreds of rods divide a long member
 PUSHED = 1e-9  # of a load: what of it moves a mechanism; less is round-off
-SELF_STRESSED = 1e-10  # share of the stiffness of inextensible rods by which others let them grow: none does
-IN_PART = 1e-3  # of the largest force of such a state: smaller ones are none
+_SELF_STRESSED = 1e-10  # share of the stiffness of inextensible rods by which others let them grow: none does
+_IN_PART = 1e-3  # of the largest force of such a state: smaller ones are none
 FULL = 600  # unknowns up to which all modes, eigenvalues and singular values are computed
-MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
+_MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 
 
 # --- linear theory -----------------------------------------------------------------------------------
@@ -138,8 +138,8 @@ class FirstOrder:
         moved = moved - modes @ (modes.T @ (weight[:, None] * moved))
         soft, root = along @ moved, np.sqrt((self._measure.stiffness / self._measure.rest_length)[rows])
         values, vectors = np.linalg.eigh(root[:, None] * soft * root)
-        if values[0] <= SELF_STRESSED:
-            stressed = rows[np.abs(vectors[:, 0]) > IN_PART * np.abs(vectors[:, 0]).max()]
+        if values[0] <= _SELF_STRESSED:
+            stressed = rows[np.abs(vectors[:, 0]) > _IN_PART * np.abs(vectors[:, 0]).max()]
             message = tr(
                 "The axial forces of {rods}, which are inextensible, cannot be told: they hold each other in a state of"
                 " self-stress, alone or with supports. Let one of them have its EA.",
@@ -249,7 +249,7 @@ def mechanisms(model: Model) -> Array:
         structure = _rigid(structure)
         matrix = structure.initial_tangent
         count = regular(matrix, structure.weight, -SOFT).negative
-        modes = soft_modes(matrix, structure.weight, most=min(MOST_MODES, count))
+        modes = soft_modes(matrix, structure.weight, most=min(_MOST_MODES, count))
     fields = structure.fields(_localised(modes))
     return np.array([normalised(field) for field in fields]).reshape(fields.shape)
 
@@ -264,7 +264,7 @@ def self_stress(model: Model) -> Array:
     if structure.size <= FULL:
         states = _null_space(structure.scaled_compatibility.T) * structure.reaches[:, None]
     else:  # any forces, less those that balance their unbalanced part
-        count = min(MOST_MODES, structure.deformations - _rank(structure))
+        count = min(_MOST_MODES, structure.deformations - _rank(structure))
         states = pseudo_random(structure.deformations, count)
         factor = regular((compatibility.T @ compatibility).tocsc(), np.ones(structure.size))
         for _ in range(_REFINEMENTS):

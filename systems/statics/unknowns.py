@@ -13,11 +13,11 @@ from pinjoint.components.field import ENDS
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle, in_support_axes, spring_stiffness, supported
+from pinjoint.components.particle import AXES, Particle, in_support_axes, spring_stiffness, supported
 from pinjoint.components.rod import Rod, bends, rigid_joints
 from pinjoint.components.theory import FIRST_ORDER
 from pinjoint.components.wording import missing
-from pinjoint.systems.statics.equations import AXES, Structure
+from pinjoint.systems.statics.equations import Structure
 
 _KEPT = 1e6  # weight of supports against rods when redundants are chosen: rods are released first
 _NEVER = 1e8  # of axial forces in rods that bend, which are not released

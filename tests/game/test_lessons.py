@@ -285,6 +285,7 @@ def test_neither_check_nor_return_skips_an_explanation(session: Session) -> None
     assert course.said
     session.press("f10")
     assert (course.at, session.scene) == (1, "statics")
+    session.select(session.rods[0])
     session.press("return")
     session.scenes.apply(session)
     assert session.scene == "properties", "a key of the program again"
@@ -546,7 +547,7 @@ def test_what_is_asked_is_named_as_a_person_would(path: str, said: str, translat
     assert question(session, path) == f"Asked: {said} (kN·m)."
     assert question(session, "largest rods.*.shear") == "Asked: The largest shear, whatever its sign (kN)."
     with spoken("pt"):
-        assert question(session, path) == f"Pedido: {translated} (kN·m)."
+        assert question(session, path) == f"Pede-se: {translated} (kN·m)."
 
 
 def test_the_box_that_a_lesson_speaks_of_is_in_sight_at_once(session: Session) -> None:
@@ -643,6 +644,18 @@ def test_own_work_is_kept_and_that_of_a_lesson_asks_for_nothing() -> None:
     assert session.course is None
     assert session.view.camera.viewport.width == session.extent[0]
     assert tuple(session.particles["B"].force) == (1.0, 2.0)
+
+
+def test_return_asks_for_an_answer_and_two_quick_presses_give_two_hints(session: Session) -> None:
+    """Return opened the properties of the model, and of a double click on Hint the second half was lost."""
+    course = begun(session, "19_plastic_hinges", 0)
+    session.press("return")
+    assert session.scene == "statics"
+    assert course.mood == "wrong"
+    push(session, "hint")
+    first = course.said
+    push(session, "hint", "double click")
+    assert (course.mood, first != course.said) == ("hint", True)
 
 
 def test_the_last_task_leads_to_the_next_lesson(session: Session) -> None:

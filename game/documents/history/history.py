@@ -13,17 +13,20 @@ from pinjoint.documents.history.log import Edit, Entry, Log, Run
 from pinjoint.systems.run.checkpoint import Checkpoint
 from pinjoint.systems.run.simulation import Simulation
 
-MEMORY = 256 * 2**20  # bytes that the states before runs may take; older ones go to the disk
-
 
 class History:
     """The log of one model, from when it was opened.
 
-    on_change: called after every edit, and after every undo and redo, with the entry of the log.
+    on_change: called after every edit, and after every undo and redo, with the entry of the log. memory: bytes that the
+    states before runs may take; older ones go to the disk.
     """
 
     def __init__(
-        self, model: Model, simulation: Simulation, on_change: Callable[[Entry], None], memory: int = MEMORY
+        self,
+        model: Model,
+        simulation: Simulation,
+        on_change: Callable[[Entry], None],
+        memory: int = 256 * 2**20,
     ) -> None:
         self._done, self._undone = Log(memory), Log(memory)
         self._model = model

@@ -10,9 +10,6 @@ from pinjoint.systems.run.checkpoint import Checkpoint
 from pinjoint.systems.run.simulation import Simulation
 
 Moment = tuple[int, float | None]  # see Simulation.moment
-MEMORY = 256 * 2**20  # bytes that checkpoints may take; less: going back takes longer
-_MOST_CHECKPOINTS = 512
-_FIRST_INTERVAL = 128  # steps between checkpoints; doubled whenever there are too many
 _LONG = 2_000_000  # steps × particles of a run that is not gone through again
 _RUN_UP = 64  # steps before the one gone back to, where a checkpoint is kept for going back further
 
@@ -21,10 +18,10 @@ class Timeline:
     """Keeps checkpoints at fixed step counts, so that what is kept does not depend on the frames.
 
     Between them a run is a function of the step only, but for the hand that pulls a particle; what it did, and when, be
-    it within a step, is noted, and done again when a stretch of time is run again.
+    it within a step, is noted, and done again when a stretch of time is run again. memory: bytes that checkpoints may take.
     """
 
-    def __init__(self, simulation: Simulation, pull: Pull, memory: int = MEMORY) -> None:
+    def __init__(self, simulation: Simulation, pull: Pull, memory: int = 256 * 2**20) -> None:
         self._simulation = simulation
         self._pull = pull
         self._memory = memory
@@ -35,7 +32,7 @@ class Timeline:
         self._checkpoints: dict[int, Checkpoint] = {}
         # Steps begun and the moment when the hand changed, and to what.
         self._hands: list[tuple[int, Moment, Hand | None]] = []
-        self._interval = _FIRST_INTERVAL
+        self._interval = 128  # steps; doubled whenever there are too many
         self._went_back = False
 
     @property
@@ -85,9 +82,7 @@ class Timeline:
         if now in self._checkpoints and self._checkpoints[now].armed:
             return
         checkpoint = self._checkpoints[now] = self._simulation.checkpoint()
-        if len(self._checkpoints) > max(
-            min(_MOST_CHECKPOINTS, self._memory // max(checkpoint.state.nbytes, 1)), 2
-        ):
+        if len(self._checkpoints) > max(min(512, self._memory // max(checkpoint.state.nbytes, 1)), 2):
             self._interval *= 2
             kept = {self.first, now}
             self._checkpoints = {

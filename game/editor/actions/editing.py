@@ -31,7 +31,6 @@ from pinjoint.systems.render.picture import load_at, symbol_at
 action = actions_of("Select and edit")
 
 BESIDE = 30.0  # points to the right and down, where a duplicate appears
-ON_LINE = 4.0  # points from a rod or an outline, within which a drag is of it, not of a load on it
 
 
 # --- the pointer -----------------------------------------------------------------------------------------
@@ -138,7 +137,7 @@ def _arrow_at(context: Context, pixel: Vector) -> tuple[Loaded, list[Field[Any]]
         [] if element is None else [element, *(load for load in model.loads if load.particle is element)]
     ):
         if fields := dragged(model, view, one, pixel):
-            on_line = fields[0].unit != "m" and pick_line(model, view, pixel, ON_LINE) is not None
+            on_line = fields[0].unit != "m" and pick_line(model, view, pixel, 4.0) is not None  # points
             return None if on_line else (one, fields)
     return None
 

@@ -17,7 +17,6 @@ from pinjoint.systems.input.actions import actions_of
 
 action = actions_of("More")
 WHEEL = 0.02  # of its length, by which the wheel moves a slider
-_KNOB_REACH = 9.0  # points from the knob's middle within which a drag holds it where it was gripped
 
 
 def _scale_to(context: Context, scale: float | None) -> None:
@@ -63,7 +62,7 @@ class Slide(Placing):
         left, right, _ = place.track
         share = place.control.share
         knob = pixel[0] if share is None else left + share * (right - left)
-        held = share is not None and abs(knob - pixel[0]) <= _KNOB_REACH * place.unit
+        held = share is not None and abs(knob - pixel[0]) <= 9.0 * place.unit
         self._grip = knob - pixel[0] if held else 0.0
         if not held:
             self.move(context, pixel)

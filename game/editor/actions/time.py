@@ -23,7 +23,7 @@ from pinjoint.systems.physics.pace import natural_pace
 
 action = actions_of("Time")
 
-PACE_STEP = 2.0
+_PACE_STEP = 2.0
 _WITH_TIME = (SIMULATION, PAUSE)  # the scenes in which keys of time mean something
 FAR = 0.2  # s shown that one press skips
 MOST_WORK = 1_000_000  # steps × elements of one skip, some 20 ms
@@ -163,10 +163,10 @@ def _settle(context: Context, pixel: Vector) -> None:
 
 
 action("faster", "+", "run faster", _WITH_TIME, repeats=True, while_drawing=True)(
-    lambda context, pixel: context.document.live.clock.faster(PACE_STEP)
+    lambda context, pixel: context.document.live.clock.faster(_PACE_STEP)
 )
 action("slower", "-", "run slower", _WITH_TIME, repeats=True, while_drawing=True)(
-    lambda context, pixel: context.document.live.clock.faster(1.0 / PACE_STEP)
+    lambda context, pixel: context.document.live.clock.faster(1.0 / _PACE_STEP)
 )
 action("natural pace", "0", "reset the speed to suit the model", _WITH_TIME, while_drawing=True)(
     lambda context, pixel: setattr(context.document.live.clock, "factor", 1.0)

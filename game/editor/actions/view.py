@@ -18,7 +18,7 @@ from pinjoint.systems.render.ui.menu import pointed_at
 
 action = actions_of("View", EVERY, while_drawing=True)
 
-ZOOM_STEP = 1.2
+_ZOOM_STEP = 1.2
 THEMES = ("light", "dark", "colour-blind", "colour-blind-dark")  # in the order in which one follows another
 
 
@@ -28,10 +28,10 @@ def toggle(what: str, of: str = "view") -> Perform:
 
 
 action("zoom in", "wheel up", "zoom in at the pointer", IN_PICTURES)(
-    lambda context, pixel: context.scenes.active.zoom(context, ZOOM_STEP, pixel)
+    lambda context, pixel: context.scenes.active.zoom(context, _ZOOM_STEP, pixel)
 )
 action("zoom out", "wheel down", "zoom out", IN_PICTURES)(
-    lambda context, pixel: context.scenes.active.zoom(context, 1.0 / ZOOM_STEP, pixel)
+    lambda context, pixel: context.scenes.active.zoom(context, 1.0 / _ZOOM_STEP, pixel)
 )
 action("pan", "drag middle", "move the view (right button, too)", IN_PICTURES)(
     lambda context, dragged: context.scenes.active.pan(context, dragged)  # given how far, not where

@@ -33,8 +33,6 @@ from pinjoint.systems.forms.answers import draw_load
 from pinjoint.systems.forms.properties import heading
 
 STEP = 10.0  # points, by which arrows are dragged
-CLAMPED_BEYOND = 60.0  # points from a particle to its ground, which then holds its rotation, too
-SMALLEST_RIM = 5.0  # points, of a particle as it is drawn
 
 
 class Drawing(Gesture):
@@ -640,7 +638,7 @@ class DrawSupport(Drawing):
         camera = context.view.camera
         level = abs(along[0]) > abs(along[1])
         side = (math.copysign(1.0, along[0]), 0.0) if level else (0.0, math.copysign(1.0, along[1]))
-        rim = max(self.particle.radius, SMALLEST_RIM * context.view.pixel_ratio / camera.scale)
+        rim = max(self.particle.radius, 5.0 * context.view.pixel_ratio / camera.scale)
         start = x + rim * side[0], y + rim * side[1]
         end = start[0] + side[0] / camera.scale, start[1] + side[1] / camera.scale
         symbols = ("guided", "clamped") if wanted[2] else ("roller", "pinned")
@@ -652,7 +650,7 @@ class DrawSupport(Drawing):
         if along is None:
             return None
         points = math.hypot(*along) * context.view.camera.scale / context.view.pixel_ratio
-        return (*support_towards(along), self._turns and points > CLAMPED_BEYOND)
+        return (*support_towards(along), self._turns and points > 60.0)  # far away also the rotation
 
     def _along(self, context: Context, pixel: Vector) -> Vector | None:
         """The vector from the particle to a pixel (m); None if the pixel lies on the particle."""

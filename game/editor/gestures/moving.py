@@ -30,7 +30,6 @@ from pinjoint.systems.physics.pace import natural_pace
 
 LATELY = 0.08  # s shown before a particle is let go, in which the pointer's velocity is what it is thrown at
 FLICK = 8.0  # points by which it moves then, at least
-MOST_LATELY = 64  # places where it is known to have been
 LEVEL = 0.1  # cosine from which on an arrow counts as one towards or away from what bears it
 
 
@@ -185,7 +184,7 @@ class PullParticle(Gesture):
             Hand.on(context.model, context.view, particle, lambda: natural_pace(context.model))
         )
         # Where the pointer was of late, by simulated time, which a recording that is played knows, too.
-        self._path = deque([(context.time, particle.displacement)], maxlen=MOST_LATELY)
+        self._path = deque([(context.time, particle.displacement)], maxlen=64)
 
     def move(self, context: Context, pixel: Vector) -> None:
         x, y = context.view.camera.to_model(pixel)

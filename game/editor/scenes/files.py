@@ -14,7 +14,6 @@ from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.systems.base import Phase, System
 
-LARGEST_PICTURED = 4 * 2**20  # bytes; larger files get no picture
 READING = 0.005  # s of each frame spent on reading pictures; one picture at least
 
 
@@ -156,7 +155,7 @@ def _read_picture(tile: Tile) -> None:
     try:
         if isinstance(tile.source, str):
             tile.picture = preview(tile.source)
-        elif tile.source.stat().st_size <= LARGEST_PICTURED:
+        elif tile.source.stat().st_size <= 4 * 2**20:
             tile.picture = preview(tile.source)
             tile.explanation = tile.picture.description or tile.picture.title
         else:

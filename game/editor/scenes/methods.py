@@ -35,14 +35,11 @@ if TYPE_CHECKING:  # it imports scipy
     from pinjoint.methods.guide import Guide, Mechanism, Set
 
 WIDE = 1.1  # width / height from which the sets stand side by side
-_STILL = 0.66  # of the window, in which sets stand still while equations change
-_MOST_OF_HEIGHT = 0.45  # of the window that the equations and the table take at most; the rest is scrolled
 LARGE = 500  # rods; work on larger structures is announced in a picture first
 LOW = 1.8  # width / height of a place from which a structure stands beside its caption
 LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; below or beside its caption
 HIGH = 340.0  # points of a set in which a slider has room below supports and reactions
 MOVED = 0.08  # of the size of a structure: about what drawn displacements add to it
-_LEAST_EXPLAINED = 300.0  # points of a window; lower ones have no legend
 CAPTION, SCALE, MARGIN = 66.0, 48.0, 40.0  # points above, below (its slider), at most about a structure
 
 
@@ -167,7 +164,7 @@ class Method(Scene):
         guide, ratio, whole = self.shown_guide, context.view.pixel_ratio, context.view.canvas
         self._foot.page = self._working()
         wanted = page_height(self._foot.page, whole.width, ratio)
-        foot = min(wanted, round(_MOST_OF_HEIGHT * whole.height))
+        foot = min(wanted, round(0.45 * whole.height))  # the rest is scrolled
         _place(self._foot, Viewport(whole.left, round(whole.bottom) - foot, whole.width, foot), ratio)
         if guide is not None:
             guide.point(cell_at(self._foot.page, self._foot.camera.viewport, ratio, context.view.pointer))
@@ -179,7 +176,7 @@ class Method(Scene):
         hint = joined([tr("Wheel more rows") if foot < wanted else "", hint], BETWEEN)
         part = joined([part, acting(context.model)], ": ")
         self._foot.status = Status(time=None, state=part, hint=hint)
-        self._head.legend = context.view.legend and whole.height >= _LEAST_EXPLAINED * ratio
+        self._head.legend = context.view.legend and whole.height >= 300.0 * ratio
         explained = self._explained() if self._head.legend else ()
         head = round(
             heading_height(self._head.heading, whole.width, ratio, load_theme(context.view.theme), explained)
@@ -337,7 +334,7 @@ def _fit(model: Model, view: View, context: Context) -> None:
     v, u = view.camera.viewport, view.pixel_ratio
     left, above = (v.width // 3, 0) if _is_low(v) else (0, round(min(CAPTION * u, 0.4 * v.height)))
     below = round(min(SCALE * u, 0.1 * v.height))
-    high = min(v.height, round(_STILL * context.view.canvas.height))
+    high = min(v.height, round(0.66 * context.view.canvas.height))  # sets stand still while equations change
     within = Viewport(v.left + left, v.top + above, v.width - left, max(high - above - below, 1))
     original = model.particles.position
     reserve = MOVED * float(np.ptp(original, axis=0).max()) if len(original) else 0.0

@@ -25,14 +25,14 @@ from pinjoint.systems.program.compiler import GeneratedModule, entries_to
 from pinjoint.systems.program.entries import Account, Control
 from pinjoint.systems.program.interpreter import in_lists
 
-CONTACTS = 8  # room at first
-STEP_SHARE = 0.04  # longest step of crowds: of the time in which a disc falls through its diameter
+_CONTACTS = 8  # room at first
+_STEP_SHARE = 0.04  # longest step of crowds: of the time in which a disc falls through its diameter
 MORE, LEAST_ROOM = 1.5, 16  # times the pairs there are, and beyond that: room for those that come near later
-OF_PAIRS = (
+_OF_PAIRS = (
     *("pairs", "lasting", "forces", "normal", "slow", "rate", "room", "pushes", "impulses"),
     *("touching", "chain", "group", "report"),
 )
-OF_CONTACTS = ("chosen", "search", "start", "end", "slope", "learnt", "matrix", "block", "sides")
+_OF_CONTACTS = ("chosen", "search", "start", "end", "slope", "learnt", "matrix", "block", "sides")
 
 
 class NeighbourList:
@@ -63,7 +63,7 @@ class NeighbourList:
         self.obstacles = obstacles(self.model)
         self.count = particles.count
         self._document = self._of_document()
-        self.driven = Driven.empty(self._document, self.count, 0, CONTACTS)
+        self.driven = Driven.empty(self._document, self.count, 0, _CONTACTS)
         every = self.count + len(self.obstacles)
         self.listing = Listing.empty(self.model.rods.between, every, self.count)
         self.driven.margin[:] = -1.0  # no pair is listed yet
@@ -72,7 +72,7 @@ class NeighbourList:
         whole[Whole.DAMPED] = self.model.rods.damping.any() or self.model.environment.drag > 0.0
         real[Real.LONGEST] = np.inf
         pull = self.driven.pull
-        real[Real.CROWD_STEP] = STEP_SHARE * fall_time(particles.radius, pull)
+        real[Real.CROWD_STEP] = _STEP_SHARE * fall_time(particles.radius, pull)
         real[Real.STRONGEST] = pull.max(initial=0.0)
 
     def _of_document(self) -> dict[str, Any]:
@@ -126,7 +126,7 @@ class NeighbourList:
             self._make_room_for_pairs(int(whole[Whole.FOUND]))
         elif self.driven.lasting[: whole[Whole.LISTED]].sum() > len(self.driven.chosen):
             new = Driven.empty(self._document, self.count, 0, 2 * len(self.driven.chosen))
-            self.driven = self.driven._replace(**{name: getattr(new, name) for name in OF_CONTACTS})
+            self.driven = self.driven._replace(**{name: getattr(new, name) for name in _OF_CONTACTS})
 
     def _make_room_for_pairs(self, count: int) -> None:
         """Make room for more than `count` pairs; those listed stay."""
@@ -134,7 +134,7 @@ class NeighbourList:
         new = Driven.empty(self._document, self.count, int(MORE * count) + LEAST_ROOM, 0)
         for name in ("pairs", "lasting", "forces"):
             getattr(new, name)[:listed] = getattr(old, name)[:listed]
-        self.driven = old._replace(**{name: getattr(new, name) for name in OF_PAIRS})
+        self.driven = old._replace(**{name: getattr(new, name) for name in _OF_PAIRS})
         self.listing = self.listing._replace(found=np.empty_like(new.pairs))
 
     # --- persistent contacts ----------------------------------------------------------------------------

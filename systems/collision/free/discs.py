@@ -39,12 +39,12 @@ from pinjoint.systems.collision.columns import (
 from pinjoint.systems.collision.system import fall_time
 from pinjoint.systems.program.compiler import Choice, GeneratedModule, entries_to
 
-SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
-REPORTED_AT_ONCE = 512  # impacts; fetched before more are reported
-PILE_STEP_SHARE = 0.03  # longest step of piles: of the time in which a disc falls through its diameter
+_SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
+_REPORTED_AT_ONCE = 512  # impacts; fetched before more are reported
+_PILE_STEP_SHARE = 0.03  # longest step of piles: of the time in which a disc falls through its diameter
 # discs × events, or pairs × sweeps, after which a kernel returns: Python heeds Ctrl+C, a window draws
 WORK_AT_ONCE = 2**22
-MORE_PATIENCE = 64  # calm steps between two searches for the equilibrium of a pile
+_MORE_PATIENCE = 64  # calm steps between two searches for the equilibrium of a pile
 
 
 class Discs:
@@ -95,7 +95,7 @@ class Discs:
         self.counts[Count.RENEW], self.counts[Count.LISTED] = 1, NONE
         self.counts[Count.DISCS] = self.count
         self.numbers[Number.SMALLEST] = self.rows[: self.count, Disc.RADIUS].min(initial=np.inf)
-        self.numbers[Number.STEP_LENGTH] = PILE_STEP_SHARE * fall_time(
+        self.numbers[Number.STEP_LENGTH] = _PILE_STEP_SHARE * fall_time(
             self.rows[: self.count, Disc.RADIUS], np.hypot(*self._columns(Disc.GX).T)
         )
         self.numbers[Number.WORK_SINCE] = time
@@ -105,7 +105,7 @@ class Discs:
         self.grid = Grid.empty(n, 2)
         self.group = Group.empty(n, 4 * n + 64)
         self.pile = Pile.empty(n, len(self.group.links))
-        self.report = np.zeros((max(REPORTED_AT_ONCE, len(self.group.links)), len(Detail)))
+        self.report = np.zeros((max(_REPORTED_AT_ONCE, len(self.group.links)), len(Detail)))
         chains, entries = np.zeros(n, dtype=np.int64), np.zeros((0, 2), dtype=np.int64)
         none = Constraints(chains, entries, np.zeros(0))
         self.constraints = none.cleared(2 * len(self.group.links), self.counts)
@@ -176,7 +176,7 @@ class Discs:
             group = Group.empty(n, size)._replace(cut_short=self.group.cut_short)
             self.group, self.pile = group, Pile.empty(n, size)
             self.counts[Count.LISTED] = NONE
-            self.report = np.zeros((max(REPORTED_AT_ONCE, size), len(Detail)))
+            self.report = np.zeros((max(_REPORTED_AT_ONCE, size), len(Detail)))
             self.constraints = self.constraints.enlarged(2 * size, self.counts)
         elif reason is Reason.SETTLE:
             self._settle()
@@ -192,7 +192,7 @@ class Discs:
         pushing = np.sort(pairs, axis=1)
         end = EquilibriumSearch(place, radius, weight, pull, self._obstacles, pushing, forces).solve()
         if end is None:
-            self.counts[Count.PATIENCE] = self.counts[Count.CALM] + MORE_PATIENCE
+            self.counts[Count.PATIENCE] = self.counts[Count.CALM] + _MORE_PATIENCE
             return
         discs, displacement, pairs, forces = end
         lying, free = self.rows[discs], weight[discs] > 0.0
@@ -339,7 +339,7 @@ def _shared_ends(others: Obstacles) -> Array:
     """Column SHARED of obstacles: their ends that are also ends of an earlier obstacle with the same radius."""
     ends = np.concatenate([others.start, others.start + others.span])
     scale = np.abs(ends).max(initial=0.0) or 1.0
-    spots = np.column_stack([np.round(ends / (scale * SAME_PLACE)), np.tile(others.radius, 2)])
+    spots = np.column_stack([np.round(ends / (scale * _SAME_PLACE)), np.tile(others.radius, 2)])
     _, first, spot = np.unique(spots, axis=0, return_index=True, return_inverse=True)
     owner = np.full(len(first), len(others))
     rows = np.tile(np.arange(len(others)), 2)

@@ -24,16 +24,15 @@ from pinjoint.systems.broad_phase import Rows, gaps, near_pairs
 
 AROUND = 0.1  # of its radius around each disc, in which its neighbours are listed, and iterates are sought
 FARTHEST = 0.025  # of its radius: an equilibrium to which a disc would go farther is not near
-FIRST_BARRIER = 1e-5  # μ at first, in weight × radius of the lighter and the smaller of a pair
+_FIRST_BARRIER = 1e-5  # μ at first, in weight × radius of the lighter and the smaller of a pair
 QUICK, SLOW = 0.03, 0.8  # what is left of μ after an iteration that got far, and after others
-LONG_STEP = 0.5  # of Newton's step: an iteration that takes more of it got far
-TO_EDGE = 0.995  # of the way to where a gap or a force vanishes
+_LONG_STEP = 0.5  # of Newton's step: an iteration that takes more of it got far
+_TO_EDGE = 0.995  # of the way to where a gap or a force vanishes
 STILL, BALANCED = 1e-10, 5e-10  # at the end: motion in radii, residual force in largest weights
-CLOSED = 1e-13  # μ at the end
-EARLY_ITERATIONS = 10  # after which discs move less than LITTLE radii, or no equilibrium is near
-LITTLE = 1e-2
-MOST_NEWTON_ITERATIONS = 60  # 10 to 30 are usual
-SYMMETRIC = {"SymmetricMode": True}
+_CLOSED = 1e-13  # μ at the end
+_EARLY_ITERATIONS = 10  # after which discs move less than _LITTLE radii, or no equilibrium is near
+_LITTLE = 1e-2
+_MOST_NEWTON_ITERATIONS = 60  # 10 to 30 are usual
 
 
 class EquilibriumSearch:
@@ -95,23 +94,23 @@ class EquilibriumSearch:
 
     def _iterate(self) -> bool:
         """Iterate by Newton's method; True if it converges to an equilibrium near by."""
-        barrier = FIRST_BARRIER
-        for turn in range(MOST_NEWTON_ITERATIONS):
+        barrier = _FIRST_BARRIER
+        for turn in range(_MOST_NEWTON_ITERATIONS):
             try:
                 motion, opening, change, left = self._newton(barrier)
             except RuntimeError:  # singular
                 return False
             forward, stronger = _share(self._slack, opening), _share(self._forces, change)
             self._place = self._place + forward * motion
-            astray = turn >= EARLY_ITERATIONS and self._farthest(motion) > LITTLE
+            astray = turn >= _EARLY_ITERATIONS and self._farthest(motion) > _LITTLE
             if astray or not self._farthest(self._place - self._start) <= AROUND:
                 return False
             self._slack += forward * opening
             self._forces += stronger * change
             present = float((self._forces * self._slack / self._scale).mean())
-            if self._farthest(motion) <= STILL and left <= BALANCED and present <= CLOSED:
+            if self._farthest(motion) <= STILL and left <= BALANCED and present <= _CLOSED:
                 return self._farthest(self._place - self._start) <= FARTHEST
-            barrier = max((QUICK if min(forward, stronger) > LONG_STEP else SLOW) * present, 0.1 * CLOSED)
+            barrier = max((QUICK if min(forward, stronger) > _LONG_STEP else SLOW) * present, 0.1 * _CLOSED)
         return False
 
     def _farthest(self, motion: Array) -> float:
@@ -130,11 +129,11 @@ class EquilibriumSearch:
         known, count = np.zeros(len(pairs)), len(self._moves)
         _, here, there = np.intersect1d(pairs @ [count, 1], pushing @ [count, 1], return_indices=True)
         known[here] = forces[there]
-        force = np.maximum(known, np.sqrt(FIRST_BARRIER) * scale / size)
+        force = np.maximum(known, np.sqrt(_FIRST_BARRIER) * scale / size)
         gap, _ = gaps(self._place, self._radius, pairs, self._obstacles)
-        slack = np.maximum(gap, FIRST_BARRIER * scale / force)
+        slack = np.maximum(gap, _FIRST_BARRIER * scale / force)
         self._pairs, self._slack, self._scale = pairs, slack, scale
-        self._forces = np.where(known > 0.0, force, FIRST_BARRIER * scale / slack)
+        self._forces = np.where(known > 0.0, force, _FIRST_BARRIER * scale / slack)
 
     def _newton(self, barrier: float) -> tuple[Array, Array, Array, float]:
         """Newton's step: of places, gaps and forces; and the residual force before it, as a share of the largest weight."""
@@ -146,7 +145,9 @@ class EquilibriumSearch:
         unbalanced = self._force + pushes @ force
         stiffness = force / slack
         matrix = (pushes @ diags(stiffness) @ opens + diags(self._inertia)).tocsc()
-        factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
+        factors = splu(
+            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
         missing = gap - slack
         wanted = barrier * self._scale / slack
         moved = factors.solve(self._force + pushes @ (wanted - stiffness * missing))
@@ -169,4 +170,4 @@ class EquilibriumSearch:
 def _share(value: Array, change: Array) -> float:
     """The largest share of a change, at most 1, that leaves all values positive."""
     shrinking = change < 0.0
-    return min(1.0, TO_EDGE * float((-value[shrinking] / change[shrinking]).min(initial=np.inf)))
+    return min(1.0, _TO_EDGE * float((-value[shrinking] / change[shrinking]).min(initial=np.inf)))

@@ -14,9 +14,8 @@ from pinjoint.systems.render.marks import Panel, Picture, Text
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import capital_height
 
-POINTS = 0.75  # of a page for each pixel, as browsers print
+_POINTS = 0.75  # of a page for each pixel, as browsers print
 # With quadratic outlines, as libraries embed them; what pygame draws has cubic ones.
-_FONTS = {"regular": "Inter-Regular.ttf", "semibold": "Inter-SemiBold.ttf"}
 
 
 def as_pdf(pictures: Sequence[Picture], size: tuple[int, int], title: str) -> bytes:
@@ -26,11 +25,11 @@ def as_pdf(pictures: Sequence[Picture], size: tuple[int, int], title: str) -> by
     embed_fonts()
     made = io.BytesIO()
     width, height = size
-    page = Canvas(made, pagesize=(POINTS * width, POINTS * height), invariant=1, pageCompression=1)
+    page = Canvas(made, pagesize=(_POINTS * width, _POINTS * height), invariant=1, pageCompression=1)
     page.setTitle(UNPRINTABLE.sub("�", title))
     page.setAuthor("")
     page.setCreator("Pinjoint")
-    page.scale(POINTS, POINTS)
+    page.scale(_POINTS, _POINTS)
     for picture in pictures:
         draw_picture(page, picture, height)
     page.showPage()
@@ -60,7 +59,7 @@ def embed_fonts() -> None:
     from reportlab.pdfbase.pdfmetrics import registerFont
     from reportlab.pdfbase.ttfonts import TTFont
 
-    for weight, name in _FONTS.items():
+    for weight, name in {"regular": "Inter-Regular.ttf", "semibold": "Inter-SemiBold.ttf"}.items():
         registerFont(
             TTFont(f"Inter {weight}", io.BytesIO((files("pinjoint.assets") / "fonts" / name).read_bytes()))
         )

@@ -30,7 +30,6 @@ _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 # Shares of their widths by which texts begin before their places.
 _SHIFTS = {"left": 0.0, "centre": 0.5, "right": 1.0}
 _PHASES = 4  # positions of a symbol within a pixel, each way
-_MOST_CACHED = 4000  # rendered texts, symbols and panels
 _FILLED = 3e4  # pixels, how far away what is filled may reach
 _LONGEST = 4000  # characters that are drawn of a text: more than any window is wide
 # Bars, discs; and 50 pixels of strokes for each: from there on it pays to load the compiled kernels.
@@ -99,7 +98,7 @@ class Canvas:
     def _kept(self, key: Any, make: Callable[..., Any], *what: Any) -> Any:
         found = self._cache.get(key)
         if found is None:
-            if len(self._cache) >= _MOST_CACHED:
+            if len(self._cache) >= 4000:
                 self._former, self._cache = self._cache, {}
             found = self._cache[key] = self._former.pop(key, None) or make(*what)
         return found

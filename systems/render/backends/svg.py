@@ -22,7 +22,6 @@ from pinjoint.systems.render.marks import Panel, Picture, Text
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import WEIGHTS, capital_height
 
-FONTS = "Inter, sans-serif"
 _WEIGHTS = {"regular": "400", "semibold": "600"}
 _ANCHORS = {"left": "start", "centre": "middle", "right": "end"}
 _NOT_IN_IDS = re.compile(r"[\s%]|" + UNPRINTABLE.pattern)
@@ -41,7 +40,7 @@ def as_svg(pictures: Sequence[tuple[Picture, Name]], size: tuple[int, int], titl
             "width": width,
             "height": height,
             "viewBox": f"0 0 {width} {height}",
-            "font-family": FONTS,
+            "font-family": "Inter, sans-serif",
         },
     )
     ET.SubElement(root, "title").text = UNPRINTABLE.sub("�", title)
@@ -61,7 +60,10 @@ def as_svg(pictures: Sequence[tuple[Picture, Name]], size: tuple[int, int], titl
                 known = f"{number}.{name}" if number > 1 else name
                 told = UNPRINTABLE.sub("�", path(owner))
                 into = ET.SubElement(drawn, "g", {"id": known, "class": owner[0], "data-path": told})
-            for alike, run in groupby(parts, _look):
+            # Lines that one path can hold.
+            for alike, run in groupby(
+                parts, lambda one: (one.width, one.colour) if isinstance(one, Line) else None
+            ):
                 if alike is not None:
                     _add_lines(into, list(run))  # type: ignore[arg-type]
                 else:
@@ -88,11 +90,6 @@ def _frame(root: ET.Element, picture: Picture) -> ET.Element:
     v = picture.viewport
     view = {"viewBox": f"{v.left} {v.top} {v.width} {v.height}"}
     return ET.SubElement(root, "svg", _box(*v.box) | view)
-
-
-def _look(shape: Shape) -> tuple[float, Colour] | None:
-    """What lines have in common that one path can hold; None for other shapes."""
-    return (shape.width, shape.colour) if isinstance(shape, Line) else None
 
 
 def _add_lines(into: ET.Element, lines: Sequence[Line]) -> None:

@@ -18,7 +18,6 @@ FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover on
 _FAR = 1e6  # pixels
 _MANY_LINES, _FEW = 4000, 50  # lines of which a sample is noted; boxes, looked into one by one
 _SHARES = np.linspace(0.0, 1.0, 12)[:, None]  # of a diagonal, where cells are looked at
-_CELL = 3.0  # points: how finely the picture is divided into free and taken
 
 
 class Occupancy:
@@ -26,7 +25,7 @@ class Occupancy:
 
     def __init__(self, viewport: Viewport, unit: float) -> None:
         self.viewport = viewport
-        self.cell = _CELL * unit
+        self.cell = 3.0 * unit  # points: how finely the picture is divided into free and taken
         shape = (int(viewport.height / self.cell) + 1, int(viewport.width / self.cell) + 1)
         self.taken: Truths = np.zeros(shape, dtype=bool)
         self._lined: NDArray[np.uint8] = np.zeros(shape, dtype=np.uint8)

@@ -34,7 +34,6 @@ _USUAL = 5  # of these lengths, of lines from values in their usual type
 _STEP, _HALF = 4.0, 1.5  # points between the places where a line is tested; half the room it needs there
 _CLEAR, _OFF_DIAGRAMS = 3.0, 1.0  # points between a value and all else
 _NEAR_NUMBERS = (0.5, -1.0, 0.5), (0.5, -1.0, -1.0)  # points from numbers to lines, diagrams, symbols of others
-_STAGES = 0, 3, 1000
 _COVERED = {"cover": (STRONG,), "spare": (FAINT, STRONG), "avoid": (0,)}  # by each attempt, at most
 
 
@@ -198,7 +197,7 @@ class _Placing:
         boxes, found = Boxes(middle, half, of), np.full(len(labels), -1)
         tried = _attempts(labels, of, held, cells, occupancy)
         number = np.arange(len(tried)) - np.searchsorted(of[tried], of[tried])
-        for begin, end in pairwise(_STAGES):
+        for begin, end in pairwise((0, 3, 1000)):
             now = tried[(number >= begin) & (number < end) & (found[of[tried]] < 0)]
             now = now[(own[of[now]] == NOBODY) | occupancy.may_be_of(cells[now], own[of[now]], kin[of[now]])]
             now = now[occupancy.parts.own_is_nearest(boxes.some(now), own, kin, clearly[now])]

@@ -44,12 +44,9 @@ FORCES, VELOCITIES = ("arrows.force", 0), ("arrows.velocity", 0)  # keys by whic
 
 _STEPS = 6.0  # of a scale in a power of ten
 _KEPT = 3  # steps by which a scale may be coarser than needed, so that it is steady while forces change
-_SHORT_HEAD = 0.65
 _FIELDS = {"load": "particles.applied_force", "reaction": "particles.reaction"}  # what arrows along axes show
 _MANY = 200  # such arrows of a kind, up to which all are drawn, though they may lie over each other
 _SQUARE = 20.0  # points, the side of squares of which each shows one of more arrows
-_BY_ARROW = 5.5  # points between an arrow in a diagram and its value
-_OFF_ARCS = 6.0  # points between the arrow of a moment and that of a force
 
 
 def full_load(model: Model) -> Values:
@@ -161,7 +158,7 @@ def _draw_at_rims(
 
 def head_length(length: Values, unit: float) -> Values:
     """Length and width in pixels of the heads of arrows."""
-    return np.minimum(HEAD * unit, _SHORT_HEAD * length)
+    return np.minimum(HEAD * unit, 0.65 * length)
 
 
 def draw_arrows(
@@ -305,7 +302,7 @@ def _arrow_places(
     side = np.where(pushes, opposite, direction)
     gap = sheet.radii[rows] + 2.0 * u + np.where(supported & (sides[rows] == side), SUPPORT_DEPTH * u, 0.0)
     around = np.where(DIRECTIONS[side, 1] > 0.0, 0.0, sheet.arcs[rows])  # they are open below
-    gap = np.maximum(gap, around + np.where(around > 0.0, _OFF_ARCS * u, 0.0))
+    gap = np.maximum(gap, around + np.where(around > 0.0, 6.0 * u, 0.0))
     outward = DIRECTIONS[side]
     start = sheet.centres[rows] + outward * gap[:, None]
     return start + outward * np.where(pushes, length, 0.0)[:, None], side
@@ -324,7 +321,7 @@ def _write_forces(
     texts = [f"{said(sheet, size, 'kN', bare=not few)}{case}" for size, case in sizes]
     font = sheet.font(12.0 if few else 11.0)
     half, start, end = half_sizes(sheet, texts, font), start[shown], end[shown]
-    places = by_arrows(half, start, end, _BY_ARROW * sheet.unit)
+    places = by_arrows(half, start, end, 5.5 * sheet.unit)
     out = (end - start) / np.hypot(*(end - start).T)[:, None]
     lines = np.stack([end, 0.5 * (start + end), start], axis=1)
     colour, ranks = sheet.colour_of(name), (FIRST - worth).tolist()

@@ -58,15 +58,10 @@ _SHORTEST, _SHORTEST_WITH_VALUE = 6.0, 24.0
 _MANY = 300  # rods, above which diagrams of those that bend are outlines
 _PIECES, _PIECE = 1_440, 5.0  # of all diagrams of rods that bend, at most; points, or longer
 _ROOM, _SHARE = 1.25, 0.3  # of the room of force diagrams; of the largest shear, the least that fills it with N
-_HATCH = 7.0  # points between lines across
 _DASH = 4.0  # points, of the outlines of what is no equilibrium
 _NOTHING = 1e-3  # of the largest value: what is not told
 _ALIKE = 5e-3  # of the largest value: what counts as the same
-_READ_ALIKE = 1e-3  # of a moment, which a joint passes on: one is told
-_GREAT = 0.5  # of the largest value: what is told before all else
-_ZERO = 2.5  # points, radius of the mark of a zero point
 _INSIDE = 0.02  # share of a rod, from which on a zero point or an extreme is not at its end
-_STRAIGHT = 0.9  # cosine of the turn at a joint up to which two rods are one member
 _ALONG = np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9])  # of how far the value of a rectangle can go along it
 # Between ends, and at one.
 _SLIDES = ((0.0, 0.0), (0.5, 0.5), (-0.5, 1.0), (1.0, 2.0), (-1.0, -1.0), (1.5, 4.0))
@@ -343,7 +338,7 @@ def _hatch(sheet: Sheet, diagram: _Diagram, drawn: Truths, colour: Colour, name:
     """Lines across, at equal distances along each rod."""
     some = np.flatnonzero(drawn)
     length = np.hypot(*(diagram.points[some, -1] - diagram.points[some, 0]).T)
-    count = np.clip(length / (_HATCH * sheet.unit), 1, 200).astype(np.intp)
+    count = np.clip(length / (7.0 * sheet.unit), 1, 200).astype(np.intp)  # points between lines across
     of = np.repeat(some, count)
     shares = (ranges(np.zeros_like(count), count) + 0.5) / np.repeat(count, count)
     start, normals = diagram.at(of, shares)
@@ -364,7 +359,7 @@ def _mark_zeros(sheet: Sheet, diagram: _Diagram) -> None:
     which, shares = which[kept], shares[kept]
     if not len(which):
         return
-    at, radius = diagram.at(which, shares)[0], np.full(len(which), _ZERO * sheet.unit)
+    at, radius = diagram.at(which, shares)[0], np.full(len(which), 2.5 * sheet.unit)
     colour, of = faded(sheet.theme.ink, 0.9), ("rods", diagram.rows[which])
     sheet.above.append(Discs(at, radius, colour, sheet.theme.background, 1.25 * sheet.unit, of))
 
@@ -411,7 +406,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
         inward = np.array([1.0, -1.0, 0.0])[np.minimum(number, 2)]
         places = _places_by_curves(at, normal, along, height, inward, half, sheet.unit)
         anchors = _ends_of_lines(sheet, diagram, which, shares[shown], number)
-        worth = worth + np.where(np.abs(value) > _GREAT * diagram.largest, 2e9, 0.0)  # before arrows
+        worth = worth + np.where(np.abs(value) > 0.5 * diagram.largest, 2e9, 0.0)  # before arrows
     columns = (column.tolist() for column in (diagram.rows[which], keys[shown], worth, value))
     for k, (row, number_of, most, force) in enumerate(zip(*columns, strict=True)):
         of, key, rank = ("rods", row), (field, number_of), -most
@@ -509,10 +504,10 @@ def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values) -> Truths:
     pairs = np.flatnonzero(np.diff(joints.ravel()[shared]) == 0)
     one, other = shared[pairs], shared[pairs + 1]
     first, second = np.abs(ends.ravel()[one]), np.abs(ends.ravel()[other])
-    same = np.abs(first - second) <= _READ_ALIKE * np.maximum(first, second)
+    same = np.abs(first - second) <= 1e-3 * np.maximum(first, second)  # told once
     one, other = one[same], other[same]
     way, slope = way.reshape(-1, 2), slope.ravel()
-    straight = (way[one] * way[other]).sum(axis=1) < -_STRAIGHT
+    straight = (way[one] * way[other]).sum(axis=1) < -0.9  # cosine of the turn
     repeated.ravel()[other] = True
     repeated.ravel()[one[straight & (slope[one] * slope[other] < 0.0)]] = True  # the moment passes through
     return repeated

@@ -24,7 +24,6 @@ from pinjoint.systems.render.theme import Colour
 MOST = 150  # rods that are taken apart: of more, arrows would hide one another
 SHORTEST = 74.0  # points: shorter rods stay whole, since there is no room for arrows
 _CLEAR = math.cos(math.radians(24.0))  # of the angle between an arrow and the rods that leaves both readable
-_ASIDE = 10.0  # points by which an arrow stands beside a rod where all is taken
 # Of a bent rod; points: radius of the arrow of a moment at its end, to a value.
 _PIECES, _ARC, _APART = 16, 9.0, 4.0
 _SMALLEST_SHARE = 1e-3  # of the largest force: a smaller one of inertia is told, not drawn
@@ -168,7 +167,8 @@ def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) ->
         crowd = [max((float(side @ other) for other in taken), default=-1.0) for side in (out, -out)]
         pushes = crowd[1] <= crowd[0]  # towards the joint, if there is as much room
         side = -out if pushes else out
-        aside = np.array([-side[1], side[0]]) * (_ASIDE * u if min(crowd) > _CLEAR else 0.0)
+        # beside it where all is taken
+        aside = np.array([-side[1], side[0]]) * (10.0 * u if min(crowd) > _CLEAR else 0.0)
         taken.append(side)
         length = float(lengths(sheet, FORCES, np.array([size]), largest)[0])
         rim = centre + (radius + OFF * u) * side + aside

@@ -47,7 +47,6 @@ _SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn
 # Points, lengths of the arrows of the smallest and the largest distributed force, usually and beside diagrams.
 _ROW, _LOW_ROW = (11.0, 22.0), (5.0, 11.0)
 _APART = 15.0  # points between them
-_NO_ARROW = 2.0  # points, of a shorter one
 _MOST_ARROWS = 40  # of a rod
 _FAR = 1e6  # pixels; what is beyond is left out
 _BESIDE = 5.0  # points between a rod and arrows along it
@@ -197,7 +196,7 @@ def _draw_rows(sheet: Sheet, spans: Spans, largest: float) -> None:
     sheet.marks.append(Strokes(*line, 1.25 * u, colour, (table, whose[first])))
     sheet.occupancy.line(*line, STRONG, of_line)
     sheet.occupancy.parts.add(of_line, *line, u)
-    seen = level > _NO_ARROW * u
+    seen = level > 2.0 * u  # points; shorter ones have no arrow
     of = table, whose[seen]
     draw_arrows(sheet, of, tails[seen], every[seen], level[seen], colour, ("rods", rows[seen]), 1.25)
     sheet.explain("load per length", tails, tips)

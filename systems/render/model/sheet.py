@@ -37,7 +37,6 @@ DIRECTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 
 # Points, radius: of particles where more would hide short rods, and that can be seen and hit.
 _SMALLEST = (0.6, 5.0)
-_JOINT = 0.7  # radius of small rigid joints, of the usual one
 
 
 @dataclass
@@ -182,7 +181,7 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     smallest = min(max(0.18 * rod_length, _SMALLEST[0] * unit), _SMALLEST[1] * unit)
     radii: Values = np.maximum(model.particles.radius * camera.scale, smallest)
     if frame:
-        radii[rigid_joints(model) & (radii == smallest)] = _JOINT * smallest
+        radii[rigid_joints(model) & (radii == smallest)] = 0.7 * smallest
     around = radii[:, None] + 40.0 * unit
     seen = (centres > low - around) & (centres < high + around)
     particles, occupancy = np.flatnonzero(seen[:, 0] & seen[:, 1]), Occupancy(viewport, unit)

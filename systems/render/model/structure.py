@@ -25,15 +25,12 @@ from pinjoint.systems.render.model.values import BACKING, FIRST, by_arrows, half
 from pinjoint.systems.render.symbols import RIM, dashed
 from pinjoint.systems.render.theme import Colour, faded
 
-_CLOSEST_LINES = 8.0  # points between grid lines
 _CORNERS, _SIDES = np.array([(x, y) for y in (-1.0, 1.0) for x in (-1.0, 1.0)]), DIRECTIONS[[3, 2, 0, 1]]
-_CABLE = 0.5  # width of a cable, of that of another rod
 _DASH = 5.0  # points
 _GHOST_FROM = 4.0  # points of displacement
 _SHAPE_WIDTH, _SHAPE_RADIUS, _SHAPE_FROM = 1.5, 2.5, 0.5  # points; drawn from so large a displacement on
 _SHAPE_OPACITY = 0.75
 HALO_OPACITY = 0.4
-_SHADED = 2.0  # width of rods whose colour shows a quantity, of the usual one
 _THINNEST, _THICKEST, _DEPTHS = 0.5, 1.3, 8.0  # widths of rods by their bending stiffness, in steps of 1/8
 _DOT = 4.0  # points, radius of the dot of a rigid joint
 _HALO = 0.12  # of the length of rods, by which halos stand out, within limits
@@ -64,7 +61,7 @@ def draw_grid(sheet: Sheet) -> None:
 
 def _grid_lines(low: float, high: float, spacing: float, sheet: Sheet) -> Values:
     pixels = spacing * sheet.view.camera.scale
-    step = spacing * max(round_up(_CLOSEST_LINES * sheet.unit / pixels), 1.0)
+    step = spacing * max(round_up(8.0 * sheet.unit / pixels), 1.0)
     first, last = math.ceil(low / step), math.floor(high / step)
     return step * (first + np.arange(last - first + 1, dtype=np.float64))
 
@@ -153,7 +150,7 @@ def draw_rods(sheet: Sheet) -> None:
         colours.append(colour)
     for index, colour in enumerate(colours):
         if (mask := number == index).any():
-            wider = _SHADED if sheet.shades else 1.35 if colour == theme.yielding else 1.0
+            wider = 2.0 if sheet.shades else 1.35 if colour == theme.yielding else 1.0
             _draw_lines(sheet, slice(None) if mask.all() else mask, width * wider, colour)
     for name, wanted in (*by_force.items(), ("yielding", yielding)):
         sheet.explain(name, *sheet.lines(sheet.chosen(wanted, sheet.rods))[:2])
@@ -176,7 +173,7 @@ def _draw_lines(sheet: Sheet, mask: Truths | slice, width: float, colour: Colour
             some = ("rods", rows[which])
             sheet.marks.append(Strokes(start[which], end[which], factor * width, colour, some))
         return
-    thin, slack = _CABLE * width, np.zeros_like(cables)
+    thin, slack = 0.5 * width, np.zeros_like(cables)
     if sheet.view.forces_known:
         slack = cables & (rods.axial_force[rows] <= 0.0)
     if slack.any():

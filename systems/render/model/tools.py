@@ -18,8 +18,6 @@ from pinjoint.systems.render.typography import line_height, text_width, wrapped
 _WIDTH = 2.5  # points, of lines
 _APART, _MOST_ARROWS = 26.0, 40  # points between arrows along a rod, and how many there are at most
 _ARC = 24.0  # points, radius of a moment's
-_COILS = 9  # of the spring that pulls
-_REFUSED = 240.0  # points across what is said of something typed
 
 
 def draw_flashes(sheet: Sheet) -> list[Mark]:
@@ -75,7 +73,7 @@ def _pull(sheet: Sheet, start: Points, end: Points) -> list[Mark]:
     hook = Stamps("disc", end[None], 4.0 * u, u, colour, colour)
     if length < 12.0 * u:
         return [hook]
-    share = np.concatenate([[0.0], np.linspace(0.2, 0.8, 2 * _COILS), [1.0]])
+    share = np.concatenate([[0.0], np.linspace(0.2, 0.8, 18), [1.0]])
     side = np.where(np.arange(len(share)) % 2, 1.0, -1.0) * 5.0 * u
     side[[0, 1, -2, -1]] = 0.0
     normal = np.array([along[1], -along[0]]) / length
@@ -155,7 +153,7 @@ def _label(sheet: Sheet, preview: Preview, at: Points) -> list[Mark]:
     u, v, theme, size = sheet.unit, sheet.viewport, sheet.theme, sheet.font(13.0)
     lines = [(preview.label, theme.muted if preview.typed else theme.text)] * bool(preview.label)
     if preview.problem:
-        refused = wrapped(preview.problem, _REFUSED * u, size, "semibold")
+        refused = wrapped(preview.problem, 240.0 * u, size, "semibold")
         lines = [(line, theme.problem) for line in refused]
     lines = [(text.replace("-", "−"), ink) for text, ink in ((preview.typed, theme.text), *lines) if text]
     width = max(text_width(text, size, "semibold") for text, _ in lines) + 14.0 * u

@@ -19,7 +19,6 @@ from pinjoint.systems.render.theme import Colour, Theme, faded
 
 LEVELS = 10  # colours of the scale
 _HALO = 13.0  # points
-_LEAST_TOLD = 0.005  # smaller shares have no number
 
 
 def first_at_limit(model: Model, share: Values) -> int:
@@ -69,7 +68,7 @@ def _label(sheet: Sheet, share: Values) -> None:
     """The shares of few rods, unless they show their forces; of many that of the first at its strength."""
     first, few = first_at_limit(sheet.model, share), len(share) <= FEW and not sheet.view.all_diagrams
     for index, row in enumerate(sheet.rods.tolist()):
-        if row != first and not (few and share[row] >= _LEAST_TOLD):
+        if row != first and not (few and share[row] >= 0.005):
             continue
         text = _said(sheet.model, row, float(share[row])) if row == first else written.share(share[row])
         places = places_by_rod(sheet, index, half_sizes(sheet, [text])[0])

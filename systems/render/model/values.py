@@ -19,8 +19,6 @@ FEW_VALUES = 24  # values up to which each carries its unit and keeps clear of r
 BACKING = 0.86  # opacity behind a value
 FIRST = -1e9  # rank of values of arrows, which are few and say little without them: before those of rods
 _KEPT = 1.5  # factor by which a new value must be larger to replace one of the last picture
-_ALL_TOLD = 60  # values that are told in any picture
-_MOST_COVERED = 0.15  # of a picture, by values
 
 
 def half_sizes(sheet: Sheet, texts: Iterable[str], size: int = 0) -> Points:
@@ -86,7 +84,7 @@ def most_important(
 def room_for_values(sheet: Sheet) -> int:
     """How many values there may be room for in a picture."""
     area = sheet.viewport.width * sheet.viewport.height / sheet.unit**2
-    return max(int(_MOST_COVERED * area / (46.0 * 18.0)), _ALL_TOLD)
+    return max(int(0.15 * area / (46.0 * 18.0)), 60)  # so much of a picture, but always some
 
 
 def write(

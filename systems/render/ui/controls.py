@@ -21,7 +21,6 @@ from pinjoint.systems.render.ui.overlays import BAR
 
 SLIDER = "slider"  # the last word of the actions of what hits one
 _SIZES = 11.0, 10.0, 9.0  # points of its type, the largest in which the title stands whole beside the value
-_KNOB = 5.0  # points, its radius
 # The tools, if the toolbar has them.
 _FIRST = ("place", "rod", "rigid", "support", "force", "new grid", "load", "toggle help")
 
@@ -86,7 +85,7 @@ def _knob(place: Place, theme: Theme, hovered: bool, at: Rectangle, u: float) ->
     if place.control.share is None:
         return [track]
     knob = np.array([[left + place.control.share * (right - left), middle]])
-    return [track, Stamps("disc", knob, (_KNOB + float(hovered)) * u, u, theme.focus, theme.focus)]
+    return [track, Stamps("disc", knob, (5.0 + float(hovered)) * u, u, theme.focus, theme.focus)]
 
 
 def _put_card(paper: Paper, model: Model, view: View, theme: Theme) -> None:

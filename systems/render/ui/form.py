@@ -29,7 +29,6 @@ from pinjoint.systems.render.ui.thumbnails import thumbnail
 PROPERTIES = marked("Properties")  # the heading of an element's own boxes, where its results stand above them
 _WIDEST, _EDGE = 1500.0, 16.0  # points that tiles spread over, and around all
 _SECTION, _READING, _GAP = 28.0, 20.0, 10.0  # points: of a heading, of a result, between boxes
-_MOST_READINGS = 0.4  # share of the height that results take without being scrolled
 # Points across a tile, between, below; of its picture.
 _TILE, _TILE_GAP, _CAPTION, _PROPORTION = 172.0, 16.0, 38.0, 0.6
 _PILL, _PILL_WIDTH = 40.0, 184.0  # points: tiles without pictures
@@ -38,7 +37,6 @@ _BESIDE, _NAMES = 985.0, (412.0, 492.0)
 # Points: of the title of the box for a folder; from which it shares a row with the name, which has this share of it.
 _FOLDER, _SHARED, _SHARE_OF_NAME = 40.0, 480.0, 0.62
 _LOWEST, _LEAST_PICTURE = 0.65, 24.0  # of a picture's height that it keeps where one more row fits then; points
-_SECTIONS_SEEN = 2  # with pictures, that begin in sight in any window
 _EXPLAINED, _MOST_EXPLAINED = 2, 6  # lines of explanation: of boxes, and at most
 _LOW, _SHARE = 240.0, 0.35  # points of a height that explains nothing, and share of what is above that
 _TOLD, _APART = 11.0, 14.0  # points: type and distance of lines of an explanation
@@ -103,7 +101,7 @@ class FormLayout:
             _Line("" if section in sections[:number] else section, [reading])
             for number, (section, reading) in enumerate(zip(sections, self.form.readings, strict=True))
         ]  # they stay while boxes are scrolled
-        if len(readings) * _READING * u > _MOST_READINGS * (v.height - 100.0 * u):
+        if len(readings) * _READING * u > 0.4 * (v.height - 100.0 * u):
             self.lines, readings = readings + self.lines, []
         message = Text(self.form.message, 12.0, theme.problem, lines=ALL, apart=16.0)
         said = Column([message] * bool(message.text), around=(0.0, 3.0, 3.0), high=22.0 if self.files else 8.0)
@@ -240,7 +238,7 @@ class FormLayout:
         pictured = [isinstance(line.items[0], Tile) and not _are_pills(line.items) for line in self.lines]
         ends = [number + 1 for number, has in enumerate(pictured) if has]
         begin = [end for end in ends if self.lines[end - 1].section]
-        needed = max(begin[:_SECTIONS_SEEN], default=0)
+        needed = max(begin[:2], default=0)
         for end in reversed(ends):
             fixed = sum(self._row(line, 0.0).height(self.u, self.width) for line in self.lines[:end])
             each = (room - fixed) / sum(pictured[:end]) / self.u
@@ -281,15 +279,12 @@ def _box_lines(form: Form, width: float, u: float) -> Iterator[_Line]:
     for section, those in groupby(form.boxes, lambda box: box.section):
         own = section == form.heading
         title = PROPERTIES if own and len(form.readings) else "" if own else section
-        for (_, columns), some in groupby(those, lambda box: (box.vector, _across(box, half, u))):
+        for (_, columns), some in groupby(
+            those, lambda box: (box.vector, box.across or 1 + is_short(box, half, u))
+        ):
             for row in in_rows(list(some), columns):
                 yield _Line(title, row, columns)
                 title = ""
-
-
-def _across(box: Box, half: float, u: float) -> int:
-    """How many boxes share the row of one."""
-    return box.across or 1 + is_short(box, half, u)
 
 
 def _tile_lines(form: Form, width: float) -> Iterator[_Line]:

@@ -18,7 +18,6 @@ from pinjoint.systems.render.ui.layout import Column, Drawn, Gap, Paper, Part, P
 
 _EDGE, _GAP = 14.0, 8.0  # points: around all, between parts
 # Points of type, and the share of usual gaps; the first in which all is in sight.
-_TEXTS = ((14.0, 1.0), (12.0, 0.5))
 _BESIDE, _SIGN = 210.0, 22.0  # points that buttons take at the right end of a strip, and a sign before a text
 _DOT = 3.5  # points, radius of a task's dot
 _SIGNS = {
@@ -45,7 +44,7 @@ def compose_lesson(card: Card, view: View, theme: Theme) -> Picture:
     title = Text(card.title, 15.0, theme.text, "semibold", grow=1.0)
     progress = Row((Text(card.progress, 12.0, theme.muted), Row(_dots(card, theme))), 12.0)
     head: Part = Row((title, progress), 16.0) if strip else Column((title, progress), 4.0)
-    for points, loose in _TEXTS:
+    for points, loose in ((14.0, 1.0), (12.0, 0.5)):
         width = v.width - (2 * _EDGE + (_BESIDE + _EDGE if strip else 0.0)) * u
         lines = _lines(card, theme, width, u, points, loose)
         text = Scroll(lines, first=card.first, from_end=bool(card.said), bar=theme.muted, beside=6.0, grow=1.0)
@@ -62,7 +61,10 @@ def _button(one: Tool, theme: Theme, *, main: bool) -> Plate:
     ink = theme.panel if main else ink_of(theme, enabled=one.enabled)
     title = Text(one.title, (13.0, 12.0, 11.0), ink, "semibold", "centre", grow=1.0)
     inside = Row((title, Text(one.key, 11.0, faded(ink, 0.6))), 8.0, (8.0, 0.0, 0.0))
-    return button(inside, one.action, theme, enabled=one.enabled, stands_out=True, main=main, inset=0.0)
+    again = one.action == "hint"  # there is another one
+    return button(
+        inside, one.action, theme, enabled=one.enabled, stands_out=True, main=main, inset=0.0, again=again
+    )
 
 
 def _lines(card: Card, theme: Theme, width: float, u: float, points: float, loose: float) -> list[Part]:

@@ -43,7 +43,7 @@ def put_menu(paper: Paper, view: View, theme: Theme) -> None:
     fits = sum(widths) <= window.width - 2 * _EDGE * u
     wheel = None if fits else ("menu left", "menu right")
     most = len(parts) if fits else max(int(window.width / max(widths)), 1)
-    last = next((n for n, column in enumerate(parts) if menu.chosen in numbers_in(column)), 0)
+    last = next((n for n, column in enumerate(parts) if menu.chosen in _numbers_in(column)), 0)
     first = max(min(last, len(parts) - 1) - most + 1, 0)
     columns = Row([Column(column, grow=1.0) for column in parts[first : first + most]])
     head, foot = (
@@ -95,7 +95,7 @@ def _pointed_at(view: View, hits: list[Hit], pointer: Vector | None) -> int:
 
 def entry_beside(view: View, theme: Theme, number: int, by: int) -> int:
     """The entry at the same height in the column to the right (1) or left (-1) of that of an entry, or the same."""
-    columns = [numbers_in(column) for column in _columns(view, theme)[0]]
+    columns = [_numbers_in(column) for column in _columns(view, theme)[0]]
     here = next((n for n, column in enumerate(columns) if number in column), 0)
     if not 0 <= here + by < len(columns):
         return number
@@ -103,7 +103,7 @@ def entry_beside(view: View, theme: Theme, number: int, by: int) -> int:
     return there[min(columns[here].index(max(number, 0)), len(there) - 1)]
 
 
-def numbers_in(column: list[Part]) -> list[int]:
+def _numbers_in(column: list[Part]) -> list[int]:
     """The numbers of the entries in a column."""
     return [part.item for part in column if isinstance(part, Plate)]
 

@@ -33,9 +33,7 @@ from pinjoint.systems.render.ui.buttons import button
 from pinjoint.systems.render.ui.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Text, icon
 
 EDGE = 14.0  # points between overlays and the edges of the viewport
-_HEADING = 20.0  # points, size of its type
 _FEW_LINES, _AROUND_NOTICE = 3, 52.0  # of a notice: lines; points at the sides of its text, its sign among them
-_NOISE = 1e-6  # pixels; smaller displacements count as none
 BAR = 28.0  # points, height of the status bar
 _ROW, _ROWS_BESIDE = 28.0, 2  # of the legend: points, and how many stand beside the heading
 _STRIP = 19.0  # points, height of the scale
@@ -106,7 +104,7 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
 
 def _heading(said: str, theme: Theme) -> Text:
     """The heading (the mode, or the next task), top left."""
-    return Text(said, _HEADING, theme.text, "semibold", lines=ALL)
+    return Text(said, 20.0, theme.text, "semibold", lines=ALL)
 
 
 def heading_height(text: str, width: float, unit: float, theme: Theme, explained: Sequence[str] = ()) -> float:
@@ -236,7 +234,6 @@ def _progress(sheet: Sheet, left: float, top: float, width: float) -> list[Mark]
 
 # --- legend ----------------------------------------------------------------------------------------
 
-_BAR_WIDTH = 70.0  # points, of a scale of colours
 _RESULTS = {"tension", "compression", "moment", "shear", "reaction", "reaction moment", "utilisation"}
 _ABOVE, _PAD, _BETWEEN = 10.0, 9.0, 14.0  # points: to the edges, inside a row, between its entries
 MEANINGS = {
@@ -318,7 +315,7 @@ def _arranged(
     """A legend in rows, and whether it stands beside the heading, which takes the left up to `heading`, else below it."""
     entries = []
     for name, said in meanings:
-        wide = _BAR_WIDTH if name in _SCALES else 16.0
+        wide = 70.0 if name in _SCALES else 16.0
         swatch = [] if name in _IN_WORDS else [Drawn(partial(_swatch, name, theme), wide)]
         text = Text(said, 11.0, theme.text, "semibold" if name in _IN_WORDS else "regular")
         entries.append(Row((*swatch, text), 6.0))
@@ -516,7 +513,7 @@ def _displacements(sheet: Sheet) -> list[str]:
         return []
     inside = farthest(model, np.flatnonzero(model.rods.bending_stiffness > 0.0))[0]
     largest = max(largest, float(inside.max(initial=0.0)))
-    if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
+    if not 1e-6 < largest * sheet.view.camera.scale < sheet.unit:  # pixels; smaller ones count as none
         return []
     return [
         tr(

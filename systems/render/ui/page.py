@@ -15,8 +15,6 @@ from pinjoint.systems.render.ui.overlays import BAR, EDGE, draw_overlays, put_no
 
 _BLOCKS, _AROUND = 34.0, 6.0  # points: between blocks of a table, above and below all
 _SIZE = 12.0  # points
-_FITTING = (_SIZE, 16.0), (_SIZE, 9.0), (10.0, 8.0)  # points of type, and between columns
-_SAMPLE = 200  # rows, enough to know how wide columns are
 
 
 def draw_page(sheet: Sheet) -> list[Mark]:
@@ -82,9 +80,9 @@ class _Layout:
         size, room = font_size(_SIZE, unit), width - 2 * EDGE * unit
         self.step = line_height(size)
         self.lines = [line for text in page.lines for line in wrapped(text, room, size, "semibold")]
-        for self.type, gap in _FITTING:
+        for self.type, gap in (_SIZE, 16.0), (_SIZE, 9.0), (10.0, 8.0):  # points of type, and between columns
             self.gap, font = gap * unit, font_size(self.type, unit)
-            columns = zip(*page.table[:_SAMPLE], strict=True)
+            columns = zip(*page.table[:200], strict=True)  # enough to know how wide columns are
             widths = [max(text_width(cell, font, "semibold") for cell in column) for column in columns]
             if sum(widths) + self.gap * (len(widths) - 1) <= room:
                 break

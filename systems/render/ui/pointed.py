@@ -21,7 +21,6 @@ from pinjoint.systems.render.theme import faded
 from pinjoint.systems.render.ui.layout import Column, Paper, Plate, Row, Text
 
 _PAD, _GAP, _NEAR = 8.0, 14.0, 16.0  # points: inside the box, between columns, to the pointer
-_PIN = 4.0  # points, radius of the mark of a place
 # rows, and points of type, of which the first with room is taken
 _FORMS = (8, 12.0), (8, 9.0), (3, 12.0), (3, 9.0), (1, 12.0)
 _STEP, _BESIDE = 8.0, 90.0  # points between places that are tried; within which they are to cover no lines
@@ -42,7 +41,7 @@ def draw_pointed(sheet: Sheet, former: Placed) -> list[Mark]:
         row = np.array([pin.rod.row])
         share = min(pin.distance / float(sheet.model.rods.length[row[0]]), 1.0)
         at = view.camera.to_pixels(Axes.of(sheet.model, row).points(np.array([share]))[0])
-        size, ink = np.array([_PIN * sheet.unit]), sheet.theme.focus
+        size, ink = np.array([4.0 * sheet.unit]), sheet.theme.focus
         marks += [
             Discs(at, size, ink, sheet.theme.hollow, RIM * sheet.unit),
             *_box(sheet, pin.told, pin.rod, at[0]),

@@ -27,9 +27,7 @@ from pinjoint.systems.render.ui.overlays import taken_by_heading
 _SMALLER, _USUAL = 0.6, 84.0  # symbols, compared with those in a model; in less high ones (points) smaller yet
 _EDGE = 4.0  # points that stay free within the card
 _MARGIN = 12.0  # points around a model to begin with
-_TRIES = 4  # at which what is drawn is fitted into the card; arrows and symbols keep their size
 _SAFE, _ENOUGH = 0.99, 1.12  # of the scale that seems to fit, the one to try; how much larger it could be
-_DENSE = 0.4  # opacity of force diagrams
 _TINT = 0.16  # share of the colour of loads in the paper of discs
 
 
@@ -39,7 +37,7 @@ def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tu
     camera, places = Camera(viewport=viewport), _finite(drawn_places(model))
     camera.fit(places, _MARGIN, unit=unit)
     room = np.array([viewport.width, viewport.height]) - 2 * _EDGE * unit
-    for _ in range(_TRIES):
+    for _ in range(4):  # arrows and symbols keep their size
         marks = _marks(model, camera, unit, theme)
         low, high = extent(marks)
         span = camera.scale * np.ptp(places, axis=0) if len(places) else np.zeros(2)
@@ -102,7 +100,7 @@ def _marks(model: Model, camera: Camera, unit: float, theme: Theme) -> tuple[Mar
     below = len(sheet.marks)
     draw_diagrams(sheet, taken_by_heading(sheet))
     sheet.marks[below:] = [
-        replace(mark, colour=faded(mark.colour, _DENSE)) if isinstance(mark, Bars) else mark
+        replace(mark, colour=faded(mark.colour, 0.4)) if isinstance(mark, Bars) else mark
         for mark in sheet.marks[below:]
     ]
     draw_supports(sheet, support_sides(sheet))
