@@ -149,7 +149,7 @@ class Acting(NamedTuple):
 
 def permanent(world: World) -> float:
     """The factor of what stands in fields of elements."""
-    return float(Acting.of(world).permanent[0])
+    return 1.0 if factors(world) is None else float(Acting.of(world).permanent[0])
 
 
 def factor_of_each(world: World, table: str) -> NDArray[np.float64]:

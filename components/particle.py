@@ -203,7 +203,7 @@ def in_support_axes(world: Store, field: NDArray[np.float64], *, back: bool = Fa
 
 def turned(field: NDArray[np.float64], angle: NDArray[np.float64]) -> NDArray[np.float64]:
     """Vectors (n, 2 or 3) along axes that are turned by angles (n,); what turns, their third part, is the same there."""
-    if not angle.any():
+    if not np.count_nonzero(angle):
         return field
     found, cosine, sine = field.copy(), np.cos(angle), np.sin(angle)
     found[:, 0] = cosine * field[:, 0] + sine * field[:, 1]

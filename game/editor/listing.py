@@ -56,7 +56,8 @@ class Lister:
     @property
     def tables(self) -> dict[str, Table]:
         """All tables by name, up to date; empty while forces are not known."""
-        known, model = self._context.view.forces_known, self._context.model
+        model = self._context.model
+        known = self._context.view.forces_known or model.solution is not None  # rows of a mechanism, too
         envelope = self._context.view.enveloped
         if self._of != (model.context, model.revision, known, language(), units_on_screen(), id(envelope)):
             found = Results.of(model if known else Model())

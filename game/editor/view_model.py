@@ -101,7 +101,9 @@ def show(context: Context, elapsed: float) -> None:
     view.steady = isinstance(context.gesture, Placing)
     if context.window is not None and context.footer is None:
         statics.share_frames(elapsed)
-    view.forces_known = solved or context.readiness.waits_for(context.simulation) is None
+    # A mechanism bears nothing, which is no force of 0.
+    is_borne = solved and (statics.balanced or statics.share != 0.0)
+    view.forces_known = is_borne if solved else context.readiness.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
     lately = context.document.chronicle.told(elapsed) if context.mode in LIVE and not solved else ""
@@ -186,11 +188,11 @@ def _unsettled(context: Context) -> str:
 def _provisional(context: Context) -> str:
     """Why what is shown is no equilibrium; "" if it is one, or nothing is computed."""
     model, document = context.model, context.document
-    if not model.rods.count or not context.view.forces_known:
+    if not model.rods.count:
         return ""
     if model.solution is not None:
         return "" if document.statics.balanced else tr(document.statics.said)
-    if document.assessment.in_equilibrium:
+    if not context.view.forces_known or document.assessment.in_equilibrium:
         return ""
     time = written.time(model.clock.time)
     return (

@@ -748,7 +748,7 @@ class Structure:
         return np.where(of_axes(soft), left, 1.0) * (self.stiffness / self.rest_length)
 
     def _sheared(self, response: Response, pull: Array | float, moment: Array, shear: Array) -> Array:
-        left = np.column_stack([-response.axis[:, 1], response.axis[:, 0]])
+        left = response.axis[:, ::-1] * [-1.0, 1.0]
         return self.scatter(pull - shear[:, None] * left, moment)
 
     def scatter(self, pull: Array, moment: Array | None = None) -> Array:

@@ -235,6 +235,7 @@ def test_what_moves_in_no_equilibrium_says_so() -> None:
     session.press("q")
     session.update_view()
     assert session.view.provisional == "mechanism"
+    assert not session.view.forces_known  # none is told as 0
     assert session.view.status.state == "mechanism"
     assert "Mechanism: the load moves" in session.view.status.notice
     session.press("space")  # which it does

@@ -14,7 +14,6 @@ from pinjoint.components.rod import bends
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.written import DIGITS, given, number
 from pinjoint.documents import models
-from pinjoint.editor.scenes.load import PLAYED
 from pinjoint.systems.render.labels.placing import LEADER_OPACITY, half_size
 from pinjoint.systems.render.marks import Owner, Panel, Picture, Points, Strokes, Text
 from pinjoint.systems.render.picture import compose
@@ -170,7 +169,7 @@ def _says(text: Text, shaft: Part, model: Model, row: int) -> bool:
 
 
 @pytest.mark.parametrize("moment", WINDOWS)
-@pytest.mark.parametrize("name", [name for name in models.bundled() if name not in PLAYED])
+@pytest.mark.parametrize("name", models.bundled())
 def test_values_stand_nearest_to_what_they_are_of(name: str, moment: Callable[[Session], None]) -> None:
     session = Session.open(name)
     moment(session)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -46,7 +47,11 @@ def _parts(mark: object, theme: Theme) -> Iterator[Part]:
     match mark:
         case Strokes() if mark.colour[3] == 255 and mark.colour != theme.ghost:
             kind = "line" if table == "rods" and mark.colour != theme.load else "shaft"
-            for owner, *ends in zip(owners, mark.start, mark.end, strict=True):
+            pieces = list(zip(owners, mark.start, mark.end, strict=True))
+            gaps = [
+                (a[0], a[2], b[1]) for a, b in pairwise(pieces) if a[0] == b[0] and kind == "line"
+            ]  # of dashes
+            for owner, *ends in pieces + gaps:
                 yield Part(owner, kind, np.array(ends), mark.colour)
         # an area along a rod, from its start and back
         case Fills() if table == "rods" and mark.corners.shape[1] > 4:

@@ -60,7 +60,7 @@ class Raster:
 
     def fills(self, pixels: Pixels, clip: Clip, mark: Fills, colour: np.uint32) -> None:
         """Blend polygons, one over the other."""
-        corners = np.clip(np.round(mark.corners), -_FARTHEST, _FARTHEST).astype(np.int64)
+        corners = np.minimum(np.maximum(np.rint(mark.corners), -_FARTHEST), _FARTHEST).astype(np.int64)
         self._kernels.fill_polygons(pixels, clip, np.ascontiguousarray(corners), colour, mark.colour[3])
 
     def bars(self, pixels: Pixels, clip: Clip, mark: Bars, colour: np.uint32) -> None:

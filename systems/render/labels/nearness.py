@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -55,7 +56,6 @@ class Parts:
         self._kept: list[tuple[Owners, Points, Points, float | Values, Points | float, int]] = []
         self._seen: _Bands
         self._pieces: _Pieces
-        self._outlines: _Pieces  # of the bands that are seen, without their width
         self._squares: _Squares
 
     def add(
@@ -137,18 +137,20 @@ class Parts:
         low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
         found = []
         for bands in self._bands():
-            finite = np.isfinite((bands.start + bands.end + bands.rise).sum(axis=1))
-            half = bands.half[:, None]
-            ends = (bands.start, bands.end, bands.start + bands.rise, bands.end + bands.rise)
-            near = (np.minimum.reduce(ends) - half <= high) & (np.maximum.reduce(ends) + half >= low)
-            found.append(bands.some(finite & near.all(axis=1)))
+            ends, near = [bands.start, bands.end], np.ones(len(bands.of), dtype=bool)
+            if bands.rise.any():
+                ends += [bands.start + bands.rise, bands.end + bands.rise]
+            for first, last, *places in zip(low, high, *(end.T for end in ends), strict=True):
+                least, most = reduce(np.minimum, places), reduce(np.maximum, places)
+                near &= (least - bands.half <= last) & (most + bands.half >= first)
+            some = bands.some(np.flatnonzero(near))
+            found.append(some.some(np.isfinite((some.start + some.end + some.rise).sum(axis=1))))
         self._squares = _Squares(*self.viewport.corners, _SIDE * self.unit)
         if found:
             columns = ([getattr(bands, column.name) for bands in found] for column in fields(_Bands))
             seen = _Bands(*map(np.concatenate, columns))
             self._seen = seen.some(np.argsort(seen.of, kind="stable"))
             self._pieces = _cut(self._seen, _SIDE * self.unit)
-            self._outlines = _cut(replace(self._seen, half=np.zeros(len(self._seen.of))), np.inf)
             self._squares.fill(self._pieces)
 
     def _own_distances(self, boxes: Boxes, own: Codes) -> tuple[Values, Values]:
@@ -163,7 +165,8 @@ class Parts:
         start, end = bands.start + bands.rise, bands.end + bands.rise
         away = _to_segments(boxes.middle[box], boxes.half[box], start, end)
         away = np.where((start == end).all(axis=1), np.maximum(away - bands.half, 0.0), away)
-        away[_are_within(boxes, box, self._outlines, band, np.zeros(len(box)))] = 0.0
+        outlines = _cut(replace(bands, half=np.zeros(len(box))), np.inf)
+        away[_are_within(boxes, box, outlines, np.arange(len(box)), np.zeros(len(box)))] = 0.0
         np.minimum.at(to_any, box, away)
         lines, to_line = bands.kind == LINE, to_any.copy()
         to_line[box[lines]] = np.inf

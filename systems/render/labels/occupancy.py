@@ -28,9 +28,10 @@ class Occupancy:
         self.cell = 3.0 * unit  # points: how finely the picture is divided into free and taken
         shape = (int(viewport.height / self.cell) + 1, int(viewport.width / self.cell) + 1)
         self.taken: Truths = np.zeros(shape, dtype=bool)
-        self._lined: NDArray[np.uint8] = np.zeros(shape, dtype=np.uint8)
+        self._lined = np.zeros(shape, dtype=np.uint8)
         self._owner: NDArray[np.int64] = np.full(shape, NOBODY)
         self._lines: list[tuple[Points, Points, int, Owners | None]] = []  # that are in neither yet
+        self._owned: list[tuple[Rows, Rows, Codes]] = []  # cells, the line through each, whose lines
         self.parts = Parts(viewport, unit)
 
     def block(self, left: float, top: float, width: float, height: float) -> None:
@@ -73,8 +74,12 @@ class Occupancy:
 
     @property
     def owner(self) -> NDArray[np.int64]:
-        """Whose the last line through each cell is."""
+        """Whose the last line through each cell is: asked only where labels look for a place."""
         self._draw_lines()
+        for cells, line, code in self._owned:
+            whose = code.take(line)
+            self._owner.ravel()[cells[whose != NOBODY]] = whose[whose != NOBODY]
+        self._owned.clear()
         return self._owner
 
     def _draw_lines(self) -> None:
@@ -99,11 +104,11 @@ class Occupancy:
             for first, way in ((start[:, 0] - left, dx), (start[:, 1] - top, dy))
         )
         height, width = self._lined.shape
-        ok = (rows >= 0) & (columns >= 0) & (rows < height) & (columns < width)
-        cells, line = (rows * width + columns)[ok], line[ok]
+        cells, ok = rows * width + columns, (rows >= 0) & (columns >= 0) & (rows < height) & (columns < width)
+        if not ok.all():
+            cells, line = cells[ok], line[ok]
         self._lined.ravel()[cells] = strength.take(line)
-        whose = code.take(line)
-        self._owner.ravel()[cells[whose != NOBODY]] = whose[whose != NOBODY]
+        self._owned.append((cells, line, code))
 
     def crossed(self, left: float, top: float, width: float, height: float) -> int:
         """How much of a rectangle is taken or crossed by lines, in cells."""
@@ -112,7 +117,7 @@ class Occupancy:
 
     def is_taken(self, left: float, top: float, width: float, height: float) -> bool:
         """Whether a label, a panel or a symbol takes any of a rectangle."""
-        return bool(self.taken[self._cells(left, top, width, height)].any())
+        return bool(np.count_nonzero(self.taken[self._cells(left, top, width, height)]))
 
     def are_free(self, cells: Rows, covering: int) -> Truths:
         """For each box of `cells` (n, 4), whether nothing takes any and no line in it is stronger than `covering`."""

@@ -155,6 +155,8 @@ class Sheet:
 
     def chosen(self, wanted: Rows, rows: Rows) -> Truths:
         """For each of `rows`, whether it is among `wanted`."""
+        if not len(wanted):
+            return np.zeros(len(rows), dtype=bool)
         marked = np.zeros(1 + max(rows.max(initial=-1), wanted.max(initial=-1)), dtype=bool)
         marked[wanted] = True
         return marked[rows]

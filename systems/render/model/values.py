@@ -36,7 +36,8 @@ def said(sheet: Sheet, value: float, usual: str, nothing: float = SMALLEST, *, b
 
 def reach(way: Points, half: Points) -> Values:
     """How far labels of `half` the size (…, 2) extend along unit vectors (…, 2), or points to all sides of them."""
-    return (np.abs(way) * half).sum(axis=-1)
+    found: Values = np.abs(way) * half
+    return found[..., 0] + found[..., 1]
 
 
 def off(at: Points, way: Points, gap: Values | float, half: Points) -> Points:

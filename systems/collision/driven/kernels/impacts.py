@@ -53,8 +53,8 @@ def _acceleration(driven, i, h, later):
 
 
 @compiled
-def resolve_touching(driven, control, account, place, speed):
-    """Resolve the impacts of all pairs that touch now; False if there is nothing to resolve.
+def resolve_touching(driven, control, account, place, speed, soon):
+    """Resolve the impacts of all pairs that touch now, or approach so that they do `soon` (s); False if none does.
 
     Contacts of pairs that part no faster than at rest begin to persist.
     """
@@ -63,6 +63,7 @@ def resolve_touching(driven, control, account, place, speed):
         i, j = driven.pairs[k, 0], driven.pairs[k, 1]
         gap, nx, ny = gap_of(i, j, driven.position, place, driven.radius, driven.span)
         touches = gap <= 4.0 * touching_gap(driven, i, j, place)
+        touches = touches or (soon > 0.0 and gap <= -soon * opening(i, j, nx, ny, speed))
         if not touches or (driven.lasting[k] == 0 and is_left_alone(driven, k)):
             continue
         driven.touching[count] = k

@@ -233,7 +233,7 @@ def _look(driven, control, account, place, speed):
         return _accept(driven)
     whole[Whole.MET] = 1
     if impact == start:
-        return _press(driven, control, account, place, speed)
+        return _press(driven, control, account, place, speed, after_start)
     whole[Whole.GOAL], whole[Whole.TRIES] = Goal.IMPACT, 0
     real[Real.IMPACT], real[Real.LAST] = impact, now
     return _retry(driven, control, account, place, speed, impact)
@@ -261,8 +261,9 @@ def _approach(driven, control, account, place, speed):
 
 
 @compiled
-def _press(driven, control, account, place, speed):
-    """Resolve impacts at the start of a step: of particles that are pressed together from rest.
+def _press(driven, control, account, place, speed, soon):
+    """Resolve impacts at the start of a step: of particles that are pressed together from rest, or meet so soon (s) after
+    it that time resolves no moment between.
 
     At which speed they stay in contact is known from the step that was tried.
     """
@@ -273,7 +274,7 @@ def _press(driven, control, account, place, speed):
     real[Real.LAST] = real[Real.NOW]
     set_rest_speeds(driven, real[Real.NOW] - real[Real.START], later, control[Control.STEP_SIZE])
     take_back(driven, control, account, place, speed)
-    if resolve_touching(driven, control, account, place, speed):
+    if resolve_touching(driven, control, account, place, speed, 2.0 * soon):
         if whole[Whole.LANDING]:
             whole[Whole.REASON] = StopReason.EVENT
         return _end(driven)
@@ -294,7 +295,7 @@ def _close(driven, control, account, place, speed):
         return _leave(driven, Need.ROOM, Phase.OVER)
     keep_contacts(driven, h, control, account, place, speed)
     set_rest_speeds(driven, h, speed, control[Control.STEP_SIZE])
-    resolve_touching(driven, control, account, place, speed)
+    resolve_touching(driven, control, account, place, speed, 0.0)
     if whole[Whole.LANDING] and whole[Whole.MET]:
         whole[Whole.REASON] = StopReason.EVENT
     return _end(driven)
