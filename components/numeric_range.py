@@ -30,7 +30,7 @@ def incomputable(model: Model) -> str:
 
     Only what changed since there was none is looked at.
     """
-    problem = _out_of_range(model) or _too_far(model) or _beyond(model)
+    problem = _out_of_range(model) or _too_far(model) or beyond(model)
     model.sound = model.sound if problem else model.revision
     return problem
 
@@ -77,7 +77,7 @@ def _too_far(model: Model) -> str:
     return ""
 
 
-def _beyond(model: Model) -> str:
+def beyond(model: Model) -> str:
     """The sentence that names a span load that reaches beyond its rod; "" if there is none."""
     loads, rods = model.span_loads, model.rods
     reach, length = np.fmax(loads.start, loads.end), rods.original_length[loads.rod]

@@ -194,14 +194,18 @@ class Kinks(NamedTuple):
         return found
 
     def integrated(self, times: int, size: Column, count: int, powers: int) -> Curves:
-        """So often integrated from the starts of rods: curves of these sizes (k,) with so many coefficients."""
+        """So often integrated from the starts of rods: curves of these sizes (k,) with so many coefficients.
+
+        What jumps at a start does so just after it, so that curves begin with what the joint bears.
+        """
         power = self.order + times
+        places = np.where(power == 0, np.maximum(self.place, np.nextafter(0.0, 1.0)), self.place)
         size = np.where(power < 0, 0.0, size / _FACTORIALS[np.maximum(power, 0)])
-        from_start = (self.place <= 0.0) & (power >= 0)
+        from_start = (places <= 0.0) & (power >= 0)
         polynomials = np.zeros((count, powers))
         np.add.at(polynomials, (self.row[from_start], power[from_start]), size[from_start])
-        inside = (self.place > 0.0) & (size != 0.0)
-        return Curves(polynomials, self.row[inside], self.place[inside], power[inside], size[inside])
+        inside = (places > 0.0) & (size != 0.0)
+        return Curves(polynomials, self.row[inside], places[inside], power[inside], size[inside])
 
     def bulges(self, left: Column, length: Column) -> Curves:
         """What M is between the ends of simple beams (kN·m); left: unit vectors (rods, 2), length: of the chords (m)."""
@@ -334,7 +338,7 @@ class Curves:
 
     @property
     def stretches(self) -> Stretches:
-        """These curves cut at their kinks."""
+        """These curves cut at their kinks; what one jumps by at its end is a stretch of no length."""
         count = len(self)
         whole = np.arange(count)
         if not len(self.row):
@@ -342,7 +346,7 @@ class Curves:
         both = np.concatenate(
             [np.column_stack([whole, np.zeros(count)]), np.column_stack([self.row, self.place])]
         )
-        row, low = np.unique(both[both[:, 1] < 1.0], axis=0).T
+        row, low = np.unique(both, axis=0).T
         row = row.astype(np.intp)
         last = np.append(row[1:] != row[:-1], True)
         high = np.where(last, 1.0, np.append(low[1:], 1.0))

@@ -14,11 +14,12 @@ from pinjoint.commands.progress import Progress, follow
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
+from pinjoint.components.numeric_range import beyond
 from pinjoint.components.settings import INTEGRATORS
 from pinjoint.components.theory import EXACT, THEORIES
 from pinjoint.components.wording import missing
 from pinjoint.documents import models
-from pinjoint.documents.format import missing_mods
+from pinjoint.documents.format import ModelError, missing_mods
 from pinjoint.paths import apply_override
 from pinjoint.streams import tell
 from pinjoint.systems.base import CORES, DEFAULT_LIMIT, System, cores
@@ -103,6 +104,8 @@ def _prepare(model: Model, options: argparse.Namespace, *progress: Progress) -> 
     tell(missing_mods(model))  # which would change the result
     for override in changes(options):
         apply_override(model, override)
+    if problem := beyond(model):
+        raise ModelError(f"{options.model}: {problem}")
 
 
 def add_theory(parser: argparse.ArgumentParser, default: str | None = EXACT) -> None:

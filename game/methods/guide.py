@@ -255,7 +255,7 @@ class ForceGuide(Guide):
         if self.part == 2:
             if len(self.released) > self._known:
                 self._release()
-            else:
+            elif self.axis_wanted is None:  # else the direction is still asked for
                 self.refusal = tr("First click the rod or the support to release, in set 1.")
             return True
         self.part += 1

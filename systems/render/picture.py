@@ -257,7 +257,8 @@ def _symbols(sheet: Sheet) -> list[Mark]:
     else:
         sides = support_sides(sheet)
         draw_supports(sheet, sides)
-        _draw_arrows(sheet, sides)
+        if sheet.view.enveloped is None:  # which may be of the model before, and has no arrows
+            _draw_arrows(sheet, sides)
     return sheet.marks
 
 

@@ -459,6 +459,38 @@ def test_the_legend_explains_what_the_sets_show_in_every_part(source: str, size:
         assert {text for text in said(session) if is_meaning(text)} == left
 
 
+@pytest.mark.parametrize("width", [600, 1020, 1280])
+def test_the_legend_of_a_frame_stands_above_the_sets_in_every_part_of_the_displacement_method(
+    width: int,
+) -> None:
+    session = Session.open("portal")
+    session.resize(width, 800)
+    session.press("ctrl+k")
+    for _ in range(10):
+        session.press("k")
+        session.frame(1 / 60)
+        [head] = [
+            picture
+            for picture, (_, view) in zip(
+                compose_all(session.stages, load_theme("light")), session.stages, strict=True
+            )
+            if view.explains_all
+        ]
+        explained = [mark for mark in head.marks if isinstance(mark, Text) and is_meaning(mark.text)]
+        assert all(mark.y + mark.size / 2 < head.viewport.bottom for mark in explained)
+    assert session.scene == "displacement method"
+
+
+def test_while_a_direction_is_asked_for_the_next_part_asks_again() -> None:
+    session = Session.open("portal")
+    for _ in range(2):
+        session.press("k")
+    guide = guide_of(session)
+    guide.pick(guide.sets[0].model.particles["A"])
+    session.press("k")
+    assert words.message(guide) == "Which direction of the support?"
+
+
 @pytest.mark.parametrize("force", [1e-35, 1e29])
 def test_forces_of_any_size_are_drawn(force: float) -> None:
     session = Session.open("hyperstatic")

@@ -264,6 +264,31 @@ def test_numbers_at_places_are_those_of_the_envelope() -> None:
     assert session.view.pointed.rows[-1] == ("combination", "all")
 
 
+def test_a_pinned_place_under_the_pointer_is_told_once() -> None:
+    session = in_statics(beam())
+    choose(session, "Envelope")
+    session.click(2.0, 0.0)
+    for _ in range(2):
+        session.frame(0.0)
+    assert session.view.pin is not None
+    assert texts(session).count("V max") == 1
+
+
+@pytest.mark.parametrize("deed", ["ctrl+n", "delete"])
+def test_what_is_shown_of_an_envelope_ends_with_its_model(deed: str) -> None:
+    """The mark under the pointer is looked for before the picture knows that all is gone."""
+    session = in_statics(beam())
+    choose(session, "Envelope")
+    session.select(*session.particles)
+    session.frame(0.0)
+    session.view.pointer = session.point(4.0, 0.1)
+    session.press(deed)
+    for _ in range(2):
+        session.frame(0.0)
+    assert not session.particles.count
+    assert session.view.enveloped is None
+
+
 def test_tables_name_what_governs() -> None:
     session = in_statics(beam())
     choose(session, "Envelope")

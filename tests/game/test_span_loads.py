@@ -1,10 +1,13 @@
 """Loads between the ends of rods, as people make, see, change, copy and lose them."""
 
+import json
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from pinjoint import Session
+from pinjoint.commands.command_line import main
 from pinjoint.components.mistake import Mistake
 from pinjoint.documents.document import document, parse
 from pinjoint.results import Results
@@ -108,6 +111,16 @@ def test_a_place_beyond_the_rod_is_named() -> None:
     session = Session.open(simple({"start": 5.0, "force": [0.0, -10.0]}))
     with pytest.raises(Mistake, match="reaches 5 m along rod AB, which is only 4 m long"):
         session.settle()
+
+
+def test_commands_name_the_file_of_a_load_beyond_its_rod(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "beyond.json"
+    path.write_text(json.dumps(simple({"start": 5.0, "force": [0.0, -10.0]})))
+    for command in (["run", str(path), "--static"], ["verify", str(path)], ["buckling", str(path)]):
+        assert main(command) == 2
+        assert capsys.readouterr().err.startswith(f"pinjoint: {path}: Span load 1 reaches 5 m along rod AB")
 
 
 def test_copies_have_the_loads_of_copied_rods() -> None:

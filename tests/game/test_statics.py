@@ -510,3 +510,15 @@ def test_a_run_below_its_speed_says_why(monkeypatch: pytest.MonkeyPatch) -> None
         monkeypatch.setattr(type(session.readiness), "readies", readies)
         session.update_view()
         assert session.view.status.state == f"running below the set speed: {said}"
+
+
+def test_the_button_of_a_notice_stands_below_its_text_where_there_is_little_room() -> None:
+    """Beside the panel of properties in a small window; beside the button it had a word a line."""
+    session = shown("portal")
+    session.resize(640, 480)
+    session.select(session.rods["BC"])
+    session.press("return")
+    session.frame(0.0)
+    said = [text for shown, view in session.stages for text in compose(shown, view, load_theme("light")).texts]
+    assert any(text.startswith("second order: +") for text in said)
+    assert "exact geometry" in said

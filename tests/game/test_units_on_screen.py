@@ -203,6 +203,9 @@ def test_single_units_and_decimals_are_chosen_in_a_list() -> None:
         "lengths: m": "N, m",
         "digits: 3": "N, m, 3 digits",
         "forces: MN": "m, 3 digits, MN",
+        "moduli of elasticity: MPa": "m, 3 digits, MN, MPa GPa",
+        "stresses: kN/cm²": "m, 3 digits, MN, MPa GPa, kN/cm² MPa",
+        "rotational springs: N·mm/rad": "m, 3 digits, MN, MPa GPa, kN/cm² MPa, N·mm/rad",
     }
     for chosen, says in (deeds | {"all: N mm": "N mm"}).items():
         session.press("ctrl+f2")

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from pinjoint import Session
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, Station, deflections, inner_forces
+from pinjoint.components.spans import extremes
 from pinjoint.documents.document import parse
 from pinjoint.systems.edit.dividing import divide
 from pinjoint.systems.statics.theory import Indeterminacy, linear
@@ -78,7 +79,7 @@ def test_random_frames_agree_with_members_divided_at_their_loads(seed: int) -> N
         for number, (x, part) in enumerate(of_rod):
             until = of_rod[number + 1][0] if number + 1 < len(of_rod) else length
             for key, curve in curves.items():
-                shares = np.array([x / length, np.nextafter(until / length, 0.0)])
+                shares = np.array([np.nextafter(x / length, 1.0), np.nextafter(until / length, 0.0)])
                 agree(curve.some(np.array([row])).at(shares)[0], key, part)
             if x > 0.0 and rod.bending_stiffness > 0.0:
                 there, joint = Station.of(model, row, x), f"{rod.name} {number}"
@@ -219,6 +220,28 @@ def test_a_simple_beam_under_a_force(bends: bool) -> None:
     assert shear[0] == pytest.approx([P * B / L, -P * A / L], rel=1e-12)
     sag = deflections(model, one).at(np.array([A / L]))[0, 0]
     assert sag == pytest.approx(-P * A**2 * B**2 / (3 * EI * L) if bends else 0.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(("place", "end"), [(0.0, 0), (L, 1)])
+def test_what_acts_exactly_at_an_end_counts_in_all_that_is_told_there(place: float, end: int) -> None:
+    """A simple beam with a couple and a force there: V = −M/L; the end has the couple and the force, and so have curves."""
+    session = Session.open(simple({"start": place, "moment": M, "force": [0.0, -P]}))
+    model, one = session.model, np.array([0])
+    model.show(session.document.statics)
+    rod = model.rods
+    for name, curve in DRAWN.items():
+        told, drawn = getattr(rod, curve)[0], inner_forces(model, one, name)
+        assert drawn.at([0.0, 1.0])[0] == pytest.approx(told, rel=1e-12, abs=1e-12), curve
+        both = extremes(drawn.stretches)[0][0]
+        assert both == pytest.approx([min(*told, both[0]), max(*told, both[1])], rel=1e-12, abs=1e-12), curve
+    sign = 1.0 - 2.0 * end
+    assert rod.shear[0, end] == pytest.approx(M / L + sign * P)
+    assert rod.shear[0, 1 - end] == pytest.approx(M / L)
+    assert rod.bending_moment[0] == pytest.approx([0.0, 0.0], abs=1e-12)
+    session.particles["AB"[end]].fixed_rotation = True
+    model.show(session.document.statics)
+    assert rod.bending_moment[0, end] == pytest.approx(sign * M)
+    assert rod.largest_moment[0] == pytest.approx([sign * M, place])
 
 
 def test_three_moments() -> None:

@@ -15,6 +15,7 @@ from pinjoint.components.cases import acting
 from pinjoint.components.field import Vector
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
 from pinjoint.components.settings import HUBS, Settings
 from pinjoint.components.slider import SliderStack
 from pinjoint.components.units import USUAL, show_in, units_on_screen
@@ -25,6 +26,7 @@ from pinjoint.methods import displacement_words, words
 from pinjoint.systems.base import Phase, System
 from pinjoint.systems.input.actions import DISPLACEMENT_METHOD, FORCE_METHOD, METHODS
 from pinjoint.systems.render.model.arrows import largest_force
+from pinjoint.systems.render.model.diagrams import EXPLAINED
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.ui.overlays import heading_height
 from pinjoint.systems.render.ui.page import cell_at, page_height
@@ -186,8 +188,13 @@ class Method(Scene):
     def _explained(self) -> list[str]:
         """All that the legend may have to explain in this part."""
         there = self.shown_guide.sets if self.shown_guide is not None else self._moving()
-        diagrams = any(one.view.all_diagrams for one in there)
-        return [*["tension", "compression", "reaction"] * diagrams, *["load", "ghost"] * bool(there)]
+        quantity = next((one.view.quantity for one in there if one.view.all_diagrams), None)
+        if quantity is not None and bends(there[0].model):
+            return [*EXPLAINED[quantity]]
+        return [
+            *["tension", "compression", "reaction"] * (quantity is not None),
+            *["load", "ghost"] * bool(there),
+        ]
 
     def _working(self) -> Page:
         """The equations and the table; made once in every part, since a table may be long."""

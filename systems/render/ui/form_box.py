@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 
 import numpy as np
@@ -19,6 +20,7 @@ from pinjoint.systems.render.ui.layout import Column, Drawn, Gap, Plate, Row, Te
 TITLE = 11.5  # points, size of type above and below a box
 _TEXT, _SMALL, _HIGH = 13.0, 11.0, 26.0  # points: type in a box, of its unit and note; its height
 _PAD, _GAP = 8.0, 4.0  # points between a box's edge and its text, and between a number and its unit
+_STEP = 40.0  # points that widths of boxes are multiples of, so that one grows seldom while somebody types
 
 
 def titled_box(box: Box, width: float, theme: Theme, u: float, *, selected: bool) -> Column:
@@ -31,7 +33,9 @@ def titled_box(box: Box, width: float, theme: Theme, u: float, *, selected: bool
     title = Text(box.said_title, TITLE, theme.muted, grow=1.0)
     above = Row([title, *([Text(unit, TITLE, theme.muted)] if unit else [])], 8.0, high=18.0)
     problem = [Text(box.problem, TITLE, theme.problem, lines=ALL, apart=14.0)] if box.problem else []
-    return Column((above, bare_box(box, width, theme, u, selected=selected), *problem, Gap(high=10.0)))
+    wide = _needed(box, width, u)
+    frame = Column((bare_box(box, wide, theme, u, selected=selected),), wide=wide / u)
+    return Column((above, Row((frame, Gap(grow=1.0))), *problem, Gap(high=10.0)))
 
 
 def bare_box(box: Box, width: float, theme: Theme, u: float, *, selected: bool, grow: float = 0.0) -> Plate:
@@ -93,6 +97,14 @@ def _contents(
 def _room(box: Box, width: float, u: float) -> float:
     """Pixels for what stands in a box."""
     return width - (2 * _PAD + 12.0 * (box.accepts in (WORD, NAME))) * u
+
+
+def _needed(box: Box, width: float, u: float) -> float:
+    """Pixels of at most so many that a box is wide: for its text, unit and note, and a little more to type."""
+    unit = box.unit if _has_room_for_unit(box, width, u) else ""
+    note = box.note if not box.changed else ""
+    inside = width - _room(box, width, u) + _taken(box, u, unit, note) + 8.0 * u
+    return min(max(math.ceil(inside / (_STEP * u)), 2) * _STEP * u, width)
 
 
 def _has_room_for_unit(box: Box, width: float, u: float) -> bool:

@@ -177,17 +177,19 @@ def put_notice(paper: Paper, sheet: Sheet, ends: tuple[float, float]) -> None:
         title, action = status.offer
         said_on_it = Row((Text(title, 12.0, theme.focus, "semibold"),), around=(8.0, 1.0, 1.0))
         offer = [button(said_on_it, action, theme, stands_out=True)]
-    around = _AROUND_NOTICE * u + sum(one.width(u) + 10.0 * u for one in offer)
-    for v in (sheet.view.room, sheet.viewport):  # beside the panels, unless it is long
+    # beside the panels, unless it is long; the button beside the text, unless this is long there
+    for v, beside in ((sheet.view.room, offer), (sheet.view.room, []), (sheet.viewport, offer)):
+        around = _AROUND_NOTICE * u + sum(one.width(u) + 10.0 * u for one in beside)
         room = min(v.width - 2 * EDGE * u, 640.0 * u) - around
         most = max(int((min(bottom, v.bottom) - top - 60.0 * u) / line_height(sheet.font(13.0))), 1)
         text = Text(said, 13.0, ink, lines=most, grow=1.0)
         if text.height(u, room) <= _FEW_LINES * line_height(sheet.font(13.0)):
             break
     widest = max(text_width(line, sheet.font(13.0)) for line in wrapped(said, room, sheet.font(13.0)))
-    inside = Row((sign, text, *offer), 10.0, (12.0, 10.0, 10.0), top=True)
+    below = [] if beside or not offer else [Row((Gap(grow=1.0), *offer))]
+    inside = Column((Row((sign, text, *beside), 10.0, top=True), *below), 6.0, (12.0, 10.0, 10.0))
     whole = Plate(inside, ground, ink if status.problem else theme.line, radius=6.0)
-    width = widest + around
+    width = max([widest + around, *(one.width(u) + 24.0 * u for one in offer)])
     height = whole.height(u, width)
     places = _for_notice(sheet, v, width, height, (top, min(bottom, v.bottom)))
     left, upper = min(places, key=lambda at: _hidden(sheet, at, width, height))

@@ -48,7 +48,8 @@ def draw_pointed(sheet: Sheet, former: Placed) -> list[Mark]:
         ]
     tagged = ((t, sheet.tagged(Hovered, name)) for name, t in sheet.model.tables.items())
     handle = next((table[int(rows[0])] for table, rows in tagged if len(rows)), None)
-    if view.pointed is not None and handle is not None and view.preview is None:
+    told_already = pin is not None and pin.told == view.pointed
+    if view.pointed is not None and handle is not None and view.preview is None and not told_already:
         at = np.array(view.pointer or view.camera.middle)
         marks += _box(sheet, view.pointed, handle, at, former if view.steady else {})
     return marks

@@ -776,3 +776,19 @@ def test_a_list_is_gone_through_by_keys_and_closes_where_something_is_typed(sess
     assert session.view.menu is None
     session.press("return")
     assert session.settings.integrator == "rk4"
+
+
+def test_boxes_are_as_wide_as_what_they_hold_and_grow_with_it(session: Session) -> None:
+    session.resize(1280, 800)
+    open_of(session, "B")
+
+    def width(title: str) -> float:
+        place = layout_of(session).place_of(box_of(session, title))
+        assert place is not None
+        return place.width
+
+    short = width("original position x")
+    assert short == width("original position y") < layout_of(session).width / 2
+    session.click_box("original position x")
+    session.type("100.123456789012")
+    assert short < width("original position x") <= layout_of(session).width / 2
