@@ -178,6 +178,16 @@ def softest(
     return value, mode
 
 
+def lowest(factor: Factor, weight: Array) -> float:
+    """About the eigenvalue λ of K φ = λ W φ nearest to 0, of a factor as by `regular`; 0 where that is singular."""
+    mode, inverse = pseudo_random(len(weight), 1)[:, 0], np.inf
+    for _ in range(6 if factor.exists else 0):
+        mode /= np.sqrt(float((weight * mode * mode).sum()))
+        solved = factor.solve(weight * mode)
+        inverse, mode = float((weight * mode * solved).sum()), solved
+    return 1.0 / inverse - NO_STIFFNESS if factor.exists else 0.0
+
+
 def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most: int = SOFT_MODES) -> Array:
     """Up to `most` modes (N, k) that K resists by less than a share SOFT of W, orthonormal in W."""
     factor = factor or regular(matrix, weight)

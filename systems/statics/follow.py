@@ -17,7 +17,7 @@ from pinjoint.components.arrays import ROUND_OFF, Array, Flags
 from pinjoint.systems.statics.behind import rest
 from pinjoint.systems.statics.complementarity import yielding_set, yielding_sets
 from pinjoint.systems.statics.equations import AT_LIMIT, Structure, largest
-from pinjoint.systems.statics.factor import Factor, regular
+from pinjoint.systems.statics.factor import NO_STIFFNESS, Factor, lowest, regular
 from pinjoint.systems.statics.response import Branches, Piece, Response, of_axes
 
 LARGEST_MOVE = 0.1  # of a rod's length, in one increment; larger: fewer increments, less sure of the branch
@@ -36,9 +36,10 @@ MOST_SHARES = 20
 LEAST_SHARE = 0.01  # of an increment to try next where a rod leaves its piece sooner
 REVERSAL = 1e-5  # increment to which the end of yielding is located; the error goes with its square
 SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
-NARROWINGS = 42  # halvings that locate a loss of stability
-# halvings after which what is found beyond has to be close by, before round-off counts
-CONFIRMING = range(12, 28)
+NARROWINGS = 42  # halvings as closely as which a loss of stability is located
+# Halvings between which what is found beyond has to be close by: before round-off counts.
+CONFIRMING = 12, 28
+STRIDE = 8  # halvings at most in one
 FARTHER = 8.0  # times the way between two states on a path: they are on two if they are that far apart
 FEW_NARROWINGS = 14  # the same in structures larger than EXACT_EVENTS
 ACTIVE_SET_ROUNDS = 12
@@ -633,10 +634,14 @@ class Path:
         The last is None if the states that come nearest are farther apart than the way between them: the unstable one
         lies on another branch, and the path goes on. An increment that fails is made smaller, and says nothing.
         """
-        found, following, ahead = beyond.point, beyond.tangent, beyond.taken
-        for narrowing in range(NARROWINGS if self.exact_events else FEW_NARROWINGS):
-            size = HALF * ahead
-            tried = self.attempt(point, tangent, size)
+        found, following, ahead, before = beyond.point, beyond.tangent, beyond.taken, math.inf
+        most = NARROWINGS if self.exact_events else FEW_NARROWINGS
+        for _ in range(2 * most):
+            least, opposed = (lowest(one.factor, self.structure.weight) for one in (tangent, following))
+            if least <= NO_STIFFNESS and np.array_equal(tangent.soft, following.soft):
+                break
+            size = ahead * (HALF if ahead > HALF * before else _share_to_loss(least, opposed))
+            tried, before = self.attempt(point, tangent, size), ahead
             while not isinstance(tried, tuple) and size > SMALLEST * ahead:
                 size *= min(tried, HALF)
                 tried = self.attempt(point, tangent, size)
@@ -646,7 +651,21 @@ class Path:
                 (point, tangent), ahead = tried, ahead - size
             else:
                 (found, following), ahead = tried, size
-            apart = self.size(self._change(point, found).moved)
-            if narrowing in CONFIRMING and apart > FARTHER * ahead * self.reference > 0.0:
+            apart, halvings = self.size(self._change(point, found).moved), math.log2(beyond.taken / ahead)
+            confirming = CONFIRMING[0] < halvings <= CONFIRMING[1]
+            if confirming and apart > FARTHER * ahead * self.reference > 0.0:
                 return point, tangent, None
+            if halvings >= most:
+                break
         return point, tangent, following
+
+
+def _share_to_loss(least: float, opposed: float) -> float:
+    """The share of the way to a point beyond a loss of stability at which to look for it next.
+
+    By the least that is resisted at both ends, as if it changed like a line; near an end as far beyond, so that what is left
+    becomes short from both sides.
+    """
+    share = least / (least - opposed) if least > 0.0 > opposed else HALF
+    share = 2.0 * share if share < 0.25 else 2.0 * share - 1.0 if share > 0.75 else share
+    return min(max(share, HALF**STRIDE), 1.0 - HALF**STRIDE)

@@ -93,7 +93,7 @@ class Settlement:
 
     @property
     def account(self) -> str:
-        """The message, or else the status, the plastic hinges in order, and the first of the other events."""
+        """The plastic hinges in order, the message, or else the status, and the first of the other events."""
         hinges = [event for event in self.events if event.kind == "hinge"]
         others = [e.message for e in self.events if e.message not in self.message and e.kind != "hinge"]
         more = len(others) - MOST_TOLD
@@ -101,7 +101,7 @@ class Settlement:
         if hinges:
             places = [joined([e.place["particle"], "×", written.given(e.load_factor, 4)]) for e in hinges]
             places[MOST_HINGES:] = ["…"] * (len(hinges) > MOST_HINGES)
-            said.append(tr("Plastic hinges by load factor: {places}.", places=joined(places, ", ")))
+            said.insert(0, tr("Plastic hinges by load factor: {places}.", places=joined(places, ", ")))
         said += others[:MOST_TOLD]
         return joined(
             [*said, plural("And one more event.", "And {count} more events.", more) if more > 0 else ""]

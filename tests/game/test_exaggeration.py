@@ -65,6 +65,7 @@ def test_large_motions_loose_particles_and_collapses_are_true_to_scale(name: str
     small |= {
         "eulers_columns": 100.0,
         "williams_toggle": 20.0,
+        "sway_frame": 1000.0,
         "gerber_beam": 50.0,
         "load_cases": 200.0,
         "fixed_beam_collapse": 20.0,

@@ -78,6 +78,13 @@ def test_the_frame_sways_and_braced_it_bulges_by_the_stability_functions() -> No
         assert read(Session.open(braced(document(free.model))), "statics.buckling") == pytest.approx(
             BRACED**2 * load, rel=2e-3
         )
+    [slider] = free.model.sliders  # of a spring at C, which hinders the sway as a roller does
+    free.particles["C"].support_springs = slider.last, 0.0
+    assert read(free, "statics.buckling") == pytest.approx(BRACED**2 * load, rel=2e-3)
+    assert [f"{50.0 * u * u * load:.4g}" for u in (SWAY, BRACED)] == [
+        "131.5",
+        "916.3",
+    ]  # as its description says
     assert [round(math.pi / u, 2) for u in (SWAY, BRACED)] == [2.17, 0.82]
     assert abs((BRACED / SWAY) ** 2 - 7.0) < 0.05
 

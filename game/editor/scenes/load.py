@@ -36,7 +36,7 @@ PLAYED = (
 FIRST = (
     *PLAYED,
     *("isostatic", "hyperstatic", "pendulum", "warren_bridge", "hyperstatic_yield", "tower", "ball_on_truss"),
-    *("portal", "eulers_columns", "portal_collapse", "rolled_cantilever", "ball_on_frame", "gerber_beam"),
+    *("portal", "eulers_columns", "sway_frame", "portal_collapse", "rolled_cantilever", "ball_on_frame"),
     *("collision_iii", "newtons_cradle", "billiards_break", "pile", "staircase", "galperin_pi"),
 )
 
