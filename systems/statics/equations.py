@@ -720,7 +720,7 @@ class Structure:
     def carried(self, response: Response, soft: Flags | None = None) -> Array:
         """What the whole distributed forces would add to the particles' forces, besides halves of them on both ends.
 
-        soft: what flows meanwhile, where ends yield.
+        soft: what flows or is slack meanwhile, where ends yield.
         """
         if self.bending is None or response.bent is None:
             return np.zeros(self.unknown.shape)

@@ -274,7 +274,7 @@ class Path:
         structure = self.structure
         flowing, slack = giving & ~branches.verge, branches.slack | (giving & branches.verge)
         factor = regular(structure.tangent(response, flowing | slack), structure.weight)
-        push = self.push(response, flowing)
+        push = self.push(response, flowing | slack)
         rate = factor.solve(push) if factor.exists else np.zeros(structure.size)
         forward = onward is None or self._goes_on(response, branches, factor, rate, onward)
         return Tangent(rate, flowing, slack, factor, 1.0 if forward else -1.0)
@@ -531,7 +531,7 @@ class Path:
             return None
         if normal is None:
             return factor.solve(residual), 0.0
-        solved = factor.solve(np.column_stack([residual, self.push(response, response.flowing)]))
+        solved = factor.solve(np.column_stack([residual, self.push(response, response.soft)]))
         dt = -float(normal @ solved[:, 0]) / (float(normal @ solved[:, 1]) + 1.0)
         return solved[:, 0] + dt * solved[:, 1], dt
 

@@ -101,7 +101,8 @@ class Loading:
 
     def _unresisted(self, tangent: Tangent) -> bool:
         """True if the load moves the structure against no more stiffness than round-off, and than what keeps it regular."""
-        structure, rate, push = self.path.structure, tangent.rate, self.path.push(self.point.response)
+        path, structure, rate = self.path, self.path.structure, tangent.rate
+        push = path.push(self.point.response, tangent.soft)
         energy = float(rate @ push) - NO_STIFFNESS * float(structure.weight @ rate**2)
         return energy < SOFT * structure.effort(rate, self.point.response) + structure.round_off_of_energy(rate)
 

@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_708,
+    "lines": 72_709,
     "files": 388,
     "names": 3_886,  # functions, classes and constants of modules
     "public names": 2_229,
     "numbers": 1_482,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 61_029,
+    "lines of tests": 61_045,
 }
 
 
