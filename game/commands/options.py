@@ -12,7 +12,7 @@ from pinjoint.commands.analysis import Analysis
 from pinjoint.commands.arguments import Parser, UsageError, count, flag, numbers, option, positive, times
 from pinjoint.commands.progress import Progress, follow
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import beyond
 from pinjoint.components.settings import INTEGRATORS
@@ -105,7 +105,7 @@ def _prepare(model: Model, options: argparse.Namespace, *progress: Progress) -> 
     for override in changes(options):
         apply_override(model, override)
     if problem := beyond(model):
-        raise ModelError(f"{options.model}: {problem}")
+        raise ModelError(joined([f"{options.model}:", problem]))
 
 
 def add_theory(parser: argparse.ArgumentParser, default: str | None = EXACT) -> None:

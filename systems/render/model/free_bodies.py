@@ -12,6 +12,7 @@ from pinjoint.components.bent import Axes
 from pinjoint.components.free_body import Apart, Force, on_joint
 from pinjoint.components.language import tr
 from pinjoint.systems.broad_phase import distance_to_segments
+from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels.occupancy import STRONG
 from pinjoint.systems.render.labels.placing import Key
 from pinjoint.systems.render.marks import Owner, Points, Strokes, Truths, Values
@@ -102,6 +103,9 @@ def _draw_bodies(sheet: Sheet, start: Points, end: Points, gap: Values) -> None:
         start = np.concatenate([start[~bent], (points[:, :-1] - overlap).reshape(-1, 2)])
         end = np.concatenate([end[~bent], (points[:, 1:] + overlap).reshape(-1, 2)])
         rods = np.concatenate([rods[~bent], np.repeat(rods[bent], _PIECES)])
+        low, high = sheet.viewport.corners
+        start, end, seen = clip_segments(start, end, low - 10.0 * u, high + 10.0 * u)
+        rods = rods[seen]
     sheet.marks.append(Strokes(start, end, 2.5 * u, sheet.theme.ink, ("rods", rods)))
     sheet.occupancy.line(start, end, STRONG)
 

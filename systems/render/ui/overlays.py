@@ -33,8 +33,7 @@ from pinjoint.systems.render.ui.buttons import button
 from pinjoint.systems.render.ui.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Text, icon
 
 EDGE = 14.0  # points between overlays and the edges of the viewport
-# Of a notice: lines, or share of the height, if more; points at the sides of its text, its sign among them.
-_FEW_LINES, _SHARE, _AROUND_NOTICE = 3, 0.2, 52.0
+_FEW_LINES, _AROUND_NOTICE = 3, 52.0  # of a notice: lines; points at the sides of its text, its sign among them
 BAR = 28.0  # points, height of the status bar
 _ROW, _ROWS_BESIDE = 28.0, 2  # of the legend: points, and how many stand beside the heading
 _STRIP = 19.0  # points, height of the scale
@@ -164,23 +163,13 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
 
 
 def put_notice(paper: Paper, sheet: Sheet, ends: tuple[float, float]) -> None:
-    """The problem or the notice, with its button; of a long notice as much as leaves the model in sight, and all of it
-    under the pointer."""
-    status, pointer, u = sheet.view.status, sheet.view.pointer, sheet.unit
-    if not (status.problem or status.notice):
-        return
-    whole, place = _notice(sheet, ends, _SHARE)
-    if status.problem or (pointer is not None and place.contains(pointer)):
-        whole, place = _notice(sheet, ends, 1.0)
-    sheet.occupancy.block(place.left, place.top, place.width, place.height)
-    paper.put(whole, place)
-    paper.marks += _progress(sheet, place.left + 12.0 * u, place.bottom - 5.0 * u, place.width - 24.0 * u)
-
-
-def _notice(sheet: Sheet, ends: tuple[float, float], share: float) -> tuple[Plate, Rectangle]:
-    """It wrapped, at the bottom or the top, in the middle or aside, where it hides least; share: of the height, at most."""
-    status, (top, bottom), u, theme = sheet.view.status, ends, sheet.unit, sheet.theme
+    """The problem or the notice, wrapped, with its button, at the bottom or the top, in the middle or aside, where it hides
+    least."""
+    status, (top, bottom) = sheet.view.status, ends
     said = status.problem or status.notice
+    if not said:
+        return
+    u, theme = sheet.unit, sheet.theme
     ink, ground = (theme.problem, theme.problem_panel) if status.problem else (theme.text, theme.panel)
     sign = Drawn(partial(_exclaimed, "!" if status.problem else "i", ink, ground), 18.0, 18.2)
     offer = []
@@ -192,8 +181,7 @@ def _notice(sheet: Sheet, ends: tuple[float, float], share: float) -> tuple[Plat
     for v, beside in ((sheet.view.room, offer), (sheet.view.room, []), (sheet.viewport, offer)):
         around = _AROUND_NOTICE * u + sum(one.width(u) + 10.0 * u for one in beside)
         room = min(v.width - 2 * EDGE * u, 640.0 * u) - around
-        high = share * (min(bottom, v.bottom) - top - 60.0 * u)
-        most = max(int(high / line_height(sheet.font(13.0))), 1 if share == 1.0 else _FEW_LINES)
+        most = max(int((min(bottom, v.bottom) - top - 60.0 * u) / line_height(sheet.font(13.0))), 1)
         text = Text(said, 13.0, ink, lines=most, grow=1.0)
         if text.height(u, room) <= _FEW_LINES * line_height(sheet.font(13.0)):
             break
@@ -205,7 +193,9 @@ def _notice(sheet: Sheet, ends: tuple[float, float], share: float) -> tuple[Plat
     height = whole.height(u, width)
     places = _for_notice(sheet, v, width, height, (top, min(bottom, v.bottom)))
     left, upper = min(places, key=lambda at: _hidden(sheet, at, width, height))
-    return whole, Rectangle(left, upper, width, height)
+    sheet.occupancy.block(left, upper, width, height)
+    paper.put(whole, Rectangle(left, upper, width, height))
+    paper.marks += _progress(sheet, left + 12.0 * u, upper + height - 5.0 * u, width - 24.0 * u)
 
 
 def _exclaimed(sign: str, ink: Colour, paper: Colour, place: Rectangle, u: float) -> list[Mark]:

@@ -122,3 +122,13 @@ def test_the_scale_is_told_whole_beside_them(size: tuple[int, int]) -> None:
     texts = picture_of(apart("isostatic", size)).texts
     assert any(text.split("   ")[0].endswith(" cm") for text in texts)
     assert not any("…" in text or "-" in text for text in texts), texts
+
+
+def test_nothing_far_from_the_window_is_drawn() -> None:
+    """Of a frame with displacements drawn 1e9 times as large, a canvas without compiled code filled 20 GB."""
+    session = apart("portal")
+    session.settings.displacement_scale = 1e9
+    session.update_view()
+    for mark in picture_of(session).marks:
+        if isinstance(mark, Strokes):
+            assert not len(mark.start) or max(np.abs(mark.start).max(), np.abs(mark.end).max()) < 4000.0

@@ -143,17 +143,6 @@ def test_a_long_notice_stands_beside_a_structure_that_fills_the_height(size: tup
     assert not covered.any()
 
 
-def test_a_long_notice_leaves_a_small_picture_in_sight_until_the_pointer_is_over_it() -> None:
-    said, lines = " ".join(f"Hinge {number} turns." for number in range(40)), []
-    for pointer in (None, (320.0, 60.0), (5.0, 5.0)):
-        picture = picture_of(triangle(), width=640, height=480, status=Status(notice=said), pointer=pointer)
-        lines.append([text for text in picture.texts if "Hinge" in text])
-    assert len(lines[0]) <= 4
-    assert lines[0][-1].endswith("…")
-    assert " ".join(lines[1]) == said
-    assert lines[2] == lines[0]
-
-
 def test_the_title_of_a_mode_stands_beside_a_legend_of_several_rows_off_the_structure() -> None:
     session = Session.open("hyperstatic")
     session.resize(1024, 640)
