@@ -102,7 +102,9 @@ def show(context: Context, elapsed: float) -> None:
     if context.window is not None and context.footer is None:
         statics.share_frames(elapsed)
     # A mechanism bears nothing, which is no force of 0.
-    is_borne = solved and (statics.balanced or statics.share != 0.0 or context.model.rods.axial_force.any())
+    is_borne = solved and (
+        statics.balanced or statics.share != 0.0 or bool(context.model.rods.axial_force.any())
+    )
     view.forces_known = is_borne if solved else context.readiness.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")

@@ -86,13 +86,13 @@ def members_met(model: Model, start: Vector, end: Vector, reach: float) -> list[
         return []
     first, last = drawn_positions(model)[rods.between.T]
     along, off = last - first, first - start
-    with np.errstate(divide="ignore", invalid="ignore"):  # of those that are parallel
+    with np.errstate(all="ignore"):  # of those that are parallel, or drawn farther away than numbers go
         across = way[0] * along[:, 1] - way[1] * along[:, 0]
         at = length * (off[:, 0] * along[:, 1] - off[:, 1] * along[:, 0]) / across
         share = (off[:, 0] * way[1] - off[:, 1] * way[0]) / across
         near = np.minimum(share, 1.0 - share) * np.hypot(*along.T)
         met = (rods.bending_stiffness > 0.0) & (near > reach) & (at > -reach) & (at < length + reach)
-    met &= np.abs(across) > 1e-6 * length * np.hypot(*along.T)  # sine of the angle between them
+        met &= np.abs(across) > 1e-6 * length * np.hypot(*along.T)  # sine of the angle between them
     return sorted(
         ((float(at[row]), rods[row], float(share[row])) for row in np.flatnonzero(met).tolist()),
         key=itemgetter(0),
