@@ -123,9 +123,8 @@ def option(
     name, _, value = usage.partition(" ")
     if "action" not in how or value:
         how = {"metavar": value or None, "type": kind} | how
-    added = to.add_argument(
-        name, help=tr(about).replace("%", "%%"), **how
-    )  # argparse takes % for a place to fill
+    about = tr(about).replace("%", "%%")  # argparse takes % for a place to fill
+    added = to.add_argument(name, help=about, **how)
     vars(added).update(beside=beside, apart=apart)
 
 

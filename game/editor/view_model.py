@@ -101,11 +101,11 @@ def show(context: Context, elapsed: float) -> None:
     view.steady = isinstance(context.gesture, Placing)
     if context.window is not None and context.footer is None:
         statics.share_frames(elapsed)
-    # A mechanism bears nothing, which is no force of 0.
-    is_borne = solved and (
-        statics.balanced or statics.share != 0.0 or bool(context.model.rods.axial_force.any())
-    )
-    view.forces_known = is_borne if solved else context.readiness.waits_for(context.simulation) is None
+    if solved:  # a mechanism bears nothing, which is no force of 0
+        borne = bool(context.model.rods.axial_force.any())
+        view.forces_known = statics.balanced or statics.share != 0.0 or borne
+    else:
+        view.forces_known = context.readiness.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
     lately = context.document.chronicle.told(elapsed) if context.mode in LIVE and not solved else ""
