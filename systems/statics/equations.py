@@ -717,7 +717,7 @@ class Structure:
         shear = moment.sum(axis=1) / np.where(response.length > 0.0, response.length, np.inf)
         return self._sheared(response, pull, moment, shear)
 
-    def carried(self, response: Response, soft: Flags | None = None) -> Array:
+    def carried(self, response: Response, soft: Flags) -> Array:
         """What the whole distributed forces would add to the particles' forces, besides halves of them on both ends.
 
         soft: what flows or is slack meanwhile, where ends yield.
@@ -726,7 +726,7 @@ class Structure:
             return np.zeros(self.unknown.shape)
         bent, pull = response.bent, np.zeros_like(response.axis)
         moment, shear = self.bending.carried(bent, response.axis, response.length, not self.first_order)
-        if soft is not None and soft.ndim > 1 and soft[:, 1:].any():
+        if soft.ndim > 1 and soft[:, 1:].any():
             hessian = self._hessian(response, soft)
             turned = flows(hessian[:, 2:, 2:], moment, soft[:, 1:])
             lost = (hessian[:, :, 2:] @ turned[:, :, None])[:, :, 0]

@@ -148,8 +148,11 @@ class Path:
         first, last = self.shares
         return last if t == 1.0 else first + t * (last - first)
 
-    def push(self, response: Response, soft: Flags | None = None) -> Array:
-        """The change of the load on the unknowns with t; distributed forces act on the bent axes, of which ends may flow."""
+    def push(self, response: Response, soft: Flags) -> Array:
+        """The change of the load on the unknowns with t; distributed forces act on the bent axes, of which ends may flow.
+
+        soft: what flows or is slack on the way.
+        """
         first, last = self.shares
         if first == last or response.bent is None:
             return self._dead_push
