@@ -170,6 +170,12 @@ class Structure:
         return replace(self, tension_limit=limitless, compression_limit=limitless, bending=bending)
 
     @property
+    def gives_way(self) -> bool:
+        """True if some rod may yield, slacken or buckle by itself."""
+        limits = self.tension_limit, self.compression_limit
+        return bool(self.sense.any() or self.ends_yield or np.isfinite(limits).any())
+
+    @property
     def struts(self) -> Flags:
         """Rods that may buckle by themselves."""
         return np.isfinite(self.buckling_load)
