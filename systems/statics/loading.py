@@ -83,7 +83,8 @@ class Loading:
             matrix = structure.tangent(before.response, tangent.soft)
             modes = unresisted(structure, before.response, matrix, tangent.factor)
         self.mechanism = modes.shape[1] > 0
-        if not path.push(before.response, tangent.soft).any():  # improve the equilibrium, or leave it if it is not stable
+        # No load: improve the equilibrium, or leave it if it is not stable.
+        if not path.push(before.response, tangent.soft).any():
             found = path.correct(self.point, self.point.displacement, 1.0, None)
             if found is None or not tangent.stable:
                 self._relax(1.0, None)
