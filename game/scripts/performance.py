@@ -144,8 +144,7 @@ class Performance:
             width, height, ratio = (*entry["resize"], 1.0)[:3]
             self._screen.size = round(width / ratio), round(height / ratio + FOOTER)
         if "say" in entry:
-            text = entry["say"]
-            self._say(tr(text))
+            self._say(tr(entry["say"]))
         elif not entry.keys() & {"expect", "resize", "window"}:  # of which nothing is seen
             self._wait(_BEAT if "input" not in entry else 0.1 * _BEAT)
 

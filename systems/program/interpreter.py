@@ -400,9 +400,8 @@ def keep_rewritten() -> None:
         cache.write(name, content)
 
 
-_Form = tuple[
-    CodeType, dict[str, _Path], dict[_Path, str]
-]  # rewritten; what it takes from outside, and what was seen
+# Rewritten; what it takes from outside, and what all that was looked up there was.
+_Form = tuple[CodeType, dict[str, _Path], dict[_Path, str]]
 
 
 class _Source:
@@ -418,6 +417,19 @@ class _Source:
         self.forms: dict[tuple[int, str], _Form] = marshal.loads(cache.read(self.kept) or marshal.dumps({}))
         self.changed = False
         self.left: dict[int, list[_Defined]] = {}
+        self._file = file
+
+    def read(self, nodes: Callable[[ast.Module], Iterable[ast.AST]]) -> None:
+        """Find what functions are among nodes of the file, by the line on which they, or their decorators, begin."""
+        self.left = {}
+        try:
+            parsed = ast.parse("".join(self.lines))
+        except SyntaxError as error:  # it is another text, such as a page with the function in it
+            raise NoPlainForm(f"{self._file} is no source: {error}") from error
+        for node in nodes(parsed):
+            if isinstance(node, _Defined):
+                decorators = node.decorator_list if isinstance(node, ast.FunctionDef) else []
+                self.left.setdefault(min(n.lineno for n in (node, *decorators)), []).append(node)
 
 
 _sources: dict[str, _Source] = {}
@@ -441,7 +453,9 @@ def _rewritten_in_lists(plain: Any) -> Interpreted:
         outside = outside | inspect.getclosurevars(plain).nonlocals
     form = source.forms.get(place)
     if form is None or any(_mark(_found(outside, path)) != mark for path, mark in form[2].items()):
-        form = _rewritten_form(plain, source, outside)
+        rewriting = _Rewriting(outside, {*code.co_varnames, *code.co_cellvars})
+        module = ast.Module([ast.fix_missing_locations(rewriting.visit(_definition(plain, source)))], [])
+        form = compile(module, code.co_filename, "exec"), rewriting.taken, rewriting.seen
         if place[1] != "<lambda>":  # of which there may be several on a line
             source.forms[place], source.changed = form, True
     scope: dict[str, Any] = dict(_HELPERS)
@@ -451,13 +465,6 @@ def _rewritten_in_lists(plain: Any) -> Interpreted:
         scope[name] = _in_scope(_as_compiled(outside, path), name, scope)
     made.__defaults__ = plain.__defaults__
     return made
-
-
-def _rewritten_form(plain: Any, source: _Source, outside: Mapping[str, Any]) -> _Form:
-    code, node = plain.__code__, _definition(plain, source)
-    rewriting = _Rewriting(outside, {*code.co_varnames, *code.co_cellvars})
-    module = ast.Module([ast.fix_missing_locations(rewriting.visit(node))], [])
-    return compile(module, code.co_filename, "exec"), rewriting.taken, rewriting.seen
 
 
 def _in_scope(value: Any, name: str, scope: dict[str, Any]) -> Any:
@@ -487,29 +494,13 @@ def _when_called(function: Callable[..., Any], name: str, scope: dict[str, Any])
 _Defined = ast.FunctionDef | ast.Lambda
 
 
-def _definitions(
-    file: str, source: _Source, nodes: Callable[[ast.Module], Iterable[ast.AST]]
-) -> dict[int, list[_Defined]]:
-    """The functions among nodes of a file, by the line on which they, or their decorators, begin."""
-    found: dict[int, list[_Defined]] = {}
-    try:
-        parsed = ast.parse("".join(source.lines))
-    except SyntaxError as error:  # it is another text, such as a page with the function in it
-        raise NoPlainForm(f"{file} is no source: {error}") from error
-    for node in nodes(parsed):
-        if isinstance(node, _Defined):
-            decorators = node.decorator_list if isinstance(node, ast.FunctionDef) else []
-            found.setdefault(min(n.lineno for n in (node, *decorators)), []).append(node)
-    return found
-
-
 def _definition(plain: Any, source: _Source) -> ast.FunctionDef:
     """The definition of a function, to be changed: one that was changed before is read again."""
-    code, file = plain.__code__, plain.__code__.co_filename
+    code = plain.__code__
     at_top = attrgetter("body")  # where most kernels are; to look through all takes ten times as long
     for nodes in (None, at_top, ast.walk):
         if nodes is not None:
-            source.left = _definitions(file, source, nodes)
+            source.read(nodes)
         there = source.left.get(code.co_firstlineno, [])
         for node in [node for node in there if _compiles_to(code, node)][:1]:
             there.remove(node)
@@ -517,7 +508,7 @@ def _definition(plain: Any, source: _Source) -> ast.FunctionDef:
                 return node
             body: list[ast.stmt] = [ast.Return(node.body)]
             return ast.copy_location(ast.FunctionDef("lambda__", node.args, body, []), node)
-    raise NoPlainForm(f"there is no source of {plain.__qualname__} in {file}")
+    raise NoPlainForm(f"there is no source of {plain.__qualname__} in {code.co_filename}")
 
 
 def _compiles_to(code: CodeType, node: _Defined) -> bool:

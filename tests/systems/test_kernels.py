@@ -128,8 +128,8 @@ KEPT = """
 import sys
 from pinjoint.systems.program import interpreter
 
-rewritten_form, anew = interpreter._rewritten_form, []
-interpreter._rewritten_form = lambda plain, *given: anew.append(plain.__name__) or rewritten_form(plain, *given)
+definition, anew = interpreter._definition, []
+interpreter._definition = lambda plain, source: anew.append(plain.__name__) or definition(plain, source)
 sys.path.insert(0, {folder!r})
 import scaled
 print(scaled.grown(2.0), scaled.roots(-1.0), *anew)
