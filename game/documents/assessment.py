@@ -43,12 +43,12 @@ class Assessment:
         self._simulation = simulation
         self._beginning: Snapshot | None = None
         self._disturbed_at, self._how = math.inf, ""  # the first step with an edit or a pull, and what it was
-        self._degrees, self._balanced, self._resting = Latest[Indeterminacy](), Latest[bool](), Latest[bool]()
+        self._degrees, self._balanced, self._resting = Latest["Indeterminacy"](), Latest[bool](), Latest[bool]()
         self._forget()
 
     def _forget(self) -> None:
         """Forget what follows from how the run began."""
-        self._theories, self._remarks = Latest[Theories](), Latest[tuple[Event, ...]]()
+        self._theories, self._remarks = Latest["Theories"](), Latest[tuple[Event, ...]]()
         self._error: tuple[Moment, MeasuredError | None] | None = None
 
     def begin(self, beginning: Snapshot) -> None:
