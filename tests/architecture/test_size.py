@@ -13,7 +13,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_704,
+    "lines": 72_717,
     "files": 388,
     "names": 3_885,  # functions, classes and constants of modules
     "public names": 2_229,
