@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
+from pinjoint.components.language import english, spoken
 from pinjoint.documents import models
 from pinjoint.results import Results
 from pinjoint.systems.statics.equations import Structure
@@ -349,3 +350,22 @@ def test_of_ends_that_reach_one_plastic_moment_together_as_many_turn_as_have_to(
     assert events(found, "collapse")[0].load_factor == pytest.approx(7 / 9, rel=1e-9)
     first = events(found, "hinge")[0]
     assert (first.place["particle"], first.load_factor) == ("C", pytest.approx(2 / 3, rel=1e-9))
+
+
+def test_joints_that_nobody_named_are_told_in_the_language_that_is_spoken() -> None:
+    joints = [
+        free("particle 1", 0.0, fixed=[True, True], fixed_rotation=True),
+        free("particle 2", 2.0, force=[0.0, -10.0]),
+    ]
+    rods = [
+        {
+            "name": "rod 1",
+            "between": ["particle 1", "particle 2"],
+            "bending_stiffness": 1e3,
+            "plastic_moment": 5.0,
+        }
+    ]
+    with spoken("pt"):
+        told = settle(models.load(model(joints, rods)), 1.0, "first-order").account
+    assert "partícula 1 × 0,25" in told and "particle" not in told
+    assert "particle 1 × 0.25" in english(told)
