@@ -86,6 +86,7 @@ class World:
         self.before_command: Callable[[], None] | None = None
         self.row_of_entity: NDArray[np.int64] = np.full(64, -1, dtype=np.int64)
         self.tables: dict[str, Table[Any]] = {}
+        self.columns_read: dict[str, Column] = {}  # at this revision: a picture reads some 300
         self.tags_revision = 0
         self._tagged: dict[type, NDArray[np.intp]] = {}  # by tag: esper ids, ascending
         self._tagged_rows: dict[type, tuple[Any, dict[str, NDArray[np.intp]]]] = {}  # with their revisions
@@ -126,6 +127,7 @@ class World:
     def next_revision(self, *roles: Role) -> int:
         """A new revision number, greater than all before, at which columns with these roles change."""
         self.revision += 1
+        self.columns_read.clear()
         for role in roles:
             self._newest[role] = self.revision
         return self.revision
