@@ -19,7 +19,7 @@ MOST = {
     "public names": 2_235,
     "numbers": 1_485,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 61_191,
+    "lines of tests": 61_193,
 }
 
 
