@@ -35,12 +35,13 @@ from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import (
     describe_motion,
     divide_named,
+    listed,
     nothing_stops,
     rod_names,
     slack_named,
 )
 from pinjoint.systems.statics.external import External, loose_bodies
-from pinjoint.systems.statics.factor import SURELY_HELD, resists, soft_modes, softest
+from pinjoint.systems.statics.factor import SURELY_HELD, regular, soft_modes, softest
 from pinjoint.systems.statics.follow import Path, Point
 from pinjoint.systems.statics.loading import Loading, first_order_mechanism
 from pinjoint.systems.statics.relax import BALANCED
@@ -99,7 +100,9 @@ class Settlement:
         more = len(others) - MOST_TOLD
         said = [self.message or tr("Result: {status}.", status=tr(self.status))]
         if hinges:
-            places = [joined([e.place["particle"], "×", written.given(e.load_factor, 4)]) for e in hinges]
+            places = [
+                joined([listed([e.place["particle"]]), "×", written.given(e.load_factor, 4)]) for e in hinges
+            ]
             places[MOST_HINGES:] = ["…"] * (len(hinges) > MOST_HINGES)
             said.insert(0, tr("Plastic hinges by load factor: {places}.", places=joined(places, ", ")))
         said += others[:MOST_TOLD]
@@ -389,7 +392,7 @@ class _Settling:
         structure, response = self.structure, self.point.response
         if structure.first_order and not response.soft.any():
             return self._theory.held
-        return resists(structure.tangent(response, response.soft), structure.weight, -SURELY_HELD)
+        return regular(structure.tangent(response, response.soft), structure.weight, -SURELY_HELD).definite
 
     def _check_balance(self, factor: float) -> None:
         """Report forces that rounding leaves unbalanced. Raises NoEquilibrium if they are many."""
@@ -417,12 +420,9 @@ class _Settling:
 
     def _residual(self) -> float:
         """The largest unbalanced force over the largest force so far."""
-        response = self.point.response
-        structure = self.structure
+        structure, response = self.structure, self.point.response
         self.largest = max(self.largest, structure.largest(self.load), structure.largest_force(response))
-        unbalanced = structure.internal(response) - self.load
-        unbalanced = unbalanced - structure.of_supports(unbalanced)
-        return structure.largest(unbalanced) / self.largest if self.largest > 0.0 else 0.0
+        return structure.unbalanced(response, self.load) / self.largest if self.largest > 0.0 else 0.0
 
     def _note_slender(self, factor: float) -> None:
         """Report, once, the rods that bend more than one cubic follows."""
