@@ -34,6 +34,7 @@ from pinjoint.systems.collision.overlaps import PARTING
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program import cache
 from pinjoint.systems.program.compiler import Choice, Compile, GeneratedModule, forget_unused, interpreted_here
+from pinjoint.systems.program.interpreter import keep_rewritten
 from pinjoint.systems.program.reordered import make_program
 from pinjoint.systems.program.writer import read_sources
 from pinjoint.systems.render.backends.raster import RASTER
@@ -126,6 +127,7 @@ class Elsewhere:
         libraries = list(_LIBRARIES)
         while not self._closed.wait(INTERVAL):
             self._look()
+            keep_rewritten()
             modules = [work.module for work in self.needed if work.module is not None]
             if libraries and modules and all(map(self.is_ready, modules)):  # what a run begins with goes before
                 importlib.import_module(libraries.pop(0))

@@ -419,7 +419,9 @@ def _end(ended: threading.Event, seconds: float, kernels: Iterable[Callable[...,
 def forget_unused() -> None:
     """Delete modules unused for two months, mostly of former versions, and what killed processes left."""
     folder, now = cache.folder(), time.time()
-    for path in (*folder.glob("pinjoint_program_*.types"), *folder.glob("pinjoint_program_*.tmp")):
+    for path in (
+        path for kind in ("types", "plain", "tmp") for path in folder.glob(f"pinjoint_program_*.{kind}")
+    ):
         with contextlib.suppress(OSError):
             if now - path.stat().st_mtime > 60 * 86400.0:
                 for old in (*folder.glob(f"__pycache__/{path.stem}.*"), *folder.glob(f"{path.stem}.*")):

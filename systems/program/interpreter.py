@@ -19,9 +19,12 @@ from __future__ import annotations
 
 import ast
 import copy
+import hashlib
 import inspect
 import linecache
+import marshal
 import math
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping
@@ -34,6 +37,7 @@ from typing import Any
 import numpy as np
 
 from pinjoint.systems import is_ours
+from pinjoint.systems.program import cache
 
 Interpreted = Callable[..., Any]
 
@@ -145,11 +149,38 @@ _HELPERS = {
 }
 
 
+_Path = tuple[str, ...]  # a name from outside, and those of attributes
+
+
+def _found(outside: Mapping[str, Any], path: _Path) -> Any:
+    """What a path leads to, through modules and enumerations; None if nowhere."""
+    value = outside.get(path[0]) if path else None
+    for name in path[1:]:
+        through = isinstance(value, ModuleType) or (isinstance(value, type) and issubclass(value, IntEnum))
+        value = getattr(value, name, None) if through else None
+    return value
+
+
+def _mark(value: Any) -> str:
+    """What rewriting heeds of something from outside: a number itself, of others what they are called."""
+    number = isinstance(value, int | float | np.generic)
+    return repr(value) if number else getattr(value, "__name__", type(value).__name__)
+
+
+def _as_compiled(outside: Mapping[str, Any], path: _Path) -> Any:
+    """What a path leads to, in the arithmetic of machine code."""
+    value, name = _found(outside, path), path[-1]
+    if _found(outside, path[:-1]) not in (math, np):
+        return value
+    return _AS_COMPILED.get(name, _quiet(getattr(math, name)) if hasattr(math, name) else value)
+
+
 class _Rewriting(ast.NodeTransformer):
     """Rewrites one function. `outside` looks up the names that it takes from outside."""
 
     def __init__(self, outside: Mapping[str, Any], own: set[str]) -> None:
-        self.taken: dict[str, Any] = {}  # what the rewritten function takes from outside, by new names
+        self.taken: dict[str, _Path] = {}  # what the rewritten function takes from outside, by new names
+        self.seen: dict[_Path, str] = {}  # what all that was looked up was
         self._outside = outside
         self._own = own
         self._temporaries = count()
@@ -158,13 +189,17 @@ class _Rewriting(ast.NodeTransformer):
 
     def _value(self, node: ast.AST) -> Any:
         """What a name from outside, or an attribute of one, is; None for everything else."""
-        if isinstance(node, ast.Name) and node.id not in self._own:
-            return self._outside.get(node.id)
-        if isinstance(node, ast.Attribute):
-            owner = self._value(node.value)
-            if isinstance(owner, ModuleType) or (isinstance(owner, type) and issubclass(owner, IntEnum)):
-                return getattr(owner, node.attr, None)
-        return None
+        path = self._path(node)
+        value = _found(self._outside, path)
+        if path:
+            self.seen[path] = _mark(value)
+        return value
+
+    def _path(self, node: ast.AST) -> _Path:
+        if isinstance(node, ast.Name):
+            return () if node.id in self._own else (node.id,)
+        path = self._path(node.value) if isinstance(node, ast.Attribute) else ()
+        return (*path, node.attr) if path and isinstance(node, ast.Attribute) else ()
 
     def _known(self, node: ast.Name | ast.Attribute) -> ast.expr | None:
         value = self._value(node)
@@ -179,7 +214,7 @@ class _Rewriting(ast.NodeTransformer):
             return node
         known = self._known(node)
         if known is None and node.id in self._outside:
-            self.taken[node.id] = self._outside[node.id]
+            self.taken[node.id] = (node.id,)
         return known or node
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
@@ -187,14 +222,9 @@ class _Rewriting(ast.NodeTransformer):
         if known is not None:
             return known
         owner = self._value(node.value)
-        if owner is math or owner is np:
-            name = f"{owner.__name__}_{node.attr}__"
-            of_c = _quiet(getattr(math, node.attr)) if hasattr(math, node.attr) else getattr(owner, node.attr)
-            self.taken[name] = _AS_COMPILED.get(node.attr, of_c)
-            return ast.copy_location(ast.Name(name, ast.Load()), node)
         if isinstance(owner, ModuleType):
             name = f"{owner.__name__.replace('.', '_')}_{node.attr}__"
-            self.taken[name] = getattr(owner, node.attr)
+            self.taken[name] = self._path(node)
             return ast.copy_location(ast.Name(name, ast.Load()), node)
         self.generic_visit(node)
         return node.value if node.attr == "value" else node  # of an enumeration, which is a number here
@@ -360,20 +390,74 @@ def rewrite(functions: Iterable[Callable[..., Any]]) -> None:
                 in_lists(function)
 
 
+def keep_rewritten() -> None:
+    """Keep on disk what was rewritten since the last call, as a thread does from time to time."""
+    with _rewriting:
+        written = {source.kept: marshal.dumps(source.forms) for source in _sources.values() if source.changed}
+        for source in _sources.values():
+            source.changed = False
+    for name, content in written.items():
+        cache.write(name, content)
+
+
+_Form = tuple[
+    CodeType, dict[str, _Path], dict[_Path, str]
+]  # rewritten; what it takes from outside, and what was seen
+
+
+class _Source:
+    """A file as it was read: which of its functions are rewritten, in this process or, `kept` in the cache, before.
+
+    forms: by line and name. changed: there are more than are kept. left: definitions that are not rewritten, by line.
+    """
+
+    def __init__(self, file: str, lines: list[str]) -> None:
+        self.lines = lines
+        about = "".join([sys.version, file, *linecache.getlines(__file__), *lines]).encode()
+        self.kept = f"pinjoint_program_{hashlib.sha256(about).hexdigest()[:24]}.plain"
+        self.forms: dict[tuple[int, str], _Form] = marshal.loads(cache.read(self.kept) or marshal.dumps({}))
+        self.changed = False
+        self.left: dict[int, list[_Defined]] = {}
+
+
+_sources: dict[str, _Source] = {}
+
+
+def _source(file: str) -> _Source:
+    """Raises NoPlainForm."""
+    linecache.checkcache(file)
+    lines = linecache.getlines(file)
+    if not lines:
+        raise NoPlainForm(f"there is no source of {file}")
+    if file not in _sources or _sources[file].lines is not lines:
+        _sources[file] = _Source(file, lines)
+    return _sources[file]
+
+
 def _rewritten_in_lists(plain: Any) -> Interpreted:
-    code, node = plain.__code__, _definition(plain)
-    outside = plain.__globals__
+    code, outside = plain.__code__, plain.__globals__
+    source, place = _source(code.co_filename), (code.co_firstlineno, code.co_name)
     if plain.__closure__:
         outside = outside | inspect.getclosurevars(plain).nonlocals
-    rewriting = _Rewriting(outside, {*code.co_varnames, *code.co_cellvars})
-    module = ast.Module([ast.fix_missing_locations(rewriting.visit(node))], [])
+    form = source.forms.get(place)
+    if form is None or any(_mark(_found(outside, path)) != mark for path, mark in form[2].items()):
+        form = _rewritten_form(plain, source, outside)
+        if place[1] != "<lambda>":  # of which there may be several on a line
+            source.forms[place], source.changed = form, True
     scope: dict[str, Any] = dict(_HELPERS)
-    exec(compile(module, code.co_filename, "exec"), scope)
-    for name, value in rewriting.taken.items():
-        scope[name] = _in_scope(value, name, scope)
-    made: Any = scope[node.name]
+    exec(form[0], scope)
+    made: Any = scope[form[0].co_names[-1]]
+    for name, path in form[1].items():
+        scope[name] = _in_scope(_as_compiled(outside, path), name, scope)
     made.__defaults__ = plain.__defaults__
     return made
+
+
+def _rewritten_form(plain: Any, source: _Source, outside: Mapping[str, Any]) -> _Form:
+    code, node = plain.__code__, _definition(plain, source)
+    rewriting = _Rewriting(outside, {*code.co_varnames, *code.co_cellvars})
+    module = ast.Module([ast.fix_missing_locations(rewriting.visit(node))], [])
+    return compile(module, code.co_filename, "exec"), rewriting.taken, rewriting.seen
 
 
 def _in_scope(value: Any, name: str, scope: dict[str, Any]) -> Any:
@@ -401,18 +485,15 @@ def _when_called(function: Callable[..., Any], name: str, scope: dict[str, Any])
 
 
 _Defined = ast.FunctionDef | ast.Lambda
-_parsed: dict[str, dict[int, list[_Defined]]] = {}  # by file, what of it is not rewritten yet
 
 
-def _definitions(file: str, nodes: Callable[[ast.Module], Iterable[ast.AST]]) -> dict[int, list[_Defined]]:
+def _definitions(
+    file: str, source: _Source, nodes: Callable[[ast.Module], Iterable[ast.AST]]
+) -> dict[int, list[_Defined]]:
     """The functions among nodes of a file, by the line on which they, or their decorators, begin."""
-    linecache.checkcache(file)
-    lines = linecache.getlines(file)
-    if not lines:
-        raise NoPlainForm(f"there is no source of {file}")
     found: dict[int, list[_Defined]] = {}
     try:
-        parsed = ast.parse("".join(lines))
+        parsed = ast.parse("".join(source.lines))
     except SyntaxError as error:  # it is another text, such as a page with the function in it
         raise NoPlainForm(f"{file} is no source: {error}") from error
     for node in nodes(parsed):
@@ -422,14 +503,14 @@ def _definitions(file: str, nodes: Callable[[ast.Module], Iterable[ast.AST]]) ->
     return found
 
 
-def _definition(plain: Any) -> ast.FunctionDef:
+def _definition(plain: Any, source: _Source) -> ast.FunctionDef:
     """The definition of a function, to be changed: one that was changed before is read again."""
     code, file = plain.__code__, plain.__code__.co_filename
     at_top = attrgetter("body")  # where most kernels are; to look through all takes ten times as long
     for nodes in (None, at_top, ast.walk):
         if nodes is not None:
-            _parsed[file] = _definitions(file, nodes)
-        there = _parsed.get(file, {}).get(code.co_firstlineno, [])
+            source.left = _definitions(file, source, nodes)
+        there = source.left.get(code.co_firstlineno, [])
         for node in [node for node in there if _compiles_to(code, node)][:1]:
             there.remove(node)
             if isinstance(node, ast.FunctionDef):

@@ -170,6 +170,12 @@ class Structure:
         return replace(self, tension_limit=limitless, compression_limit=limitless, bending=bending)
 
     @property
+    def gives_way(self) -> bool:
+        """True if some rod may yield, slacken or buckle by itself."""
+        limits = self.tension_limit, self.compression_limit
+        return bool(self.sense.any() or self.ends_yield or np.isfinite(limits).any())
+
+    @property
     def struts(self) -> Flags:
         """Rods that may buckle by themselves."""
         return np.isfinite(self.buckling_load)
@@ -717,7 +723,7 @@ class Structure:
         shear = moment.sum(axis=1) / np.where(response.length > 0.0, response.length, np.inf)
         return self._sheared(response, pull, moment, shear)
 
-    def carried(self, response: Response, soft: Flags | None = None) -> Array:
+    def carried(self, response: Response, soft: Flags) -> Array:
         """What the whole distributed forces would add to the particles' forces, besides halves of them on both ends.
 
         soft: what flows or is slack meanwhile, where ends yield.
@@ -726,7 +732,7 @@ class Structure:
             return np.zeros(self.unknown.shape)
         bent, pull = response.bent, np.zeros_like(response.axis)
         moment, shear = self.bending.carried(bent, response.axis, response.length, not self.first_order)
-        if soft is not None and soft.ndim > 1 and soft[:, 1:].any():
+        if soft.ndim > 1 and soft[:, 1:].any():
             hessian = self._hessian(response, soft)
             turned = flows(hessian[:, 2:, 2:], moment, soft[:, 1:])
             lost = (hessian[:, :, 2:] @ turned[:, :, None])[:, :, 0]

@@ -134,7 +134,8 @@ class Path:
         self.change = change
         self.shares = shares
         self._dead_push = structure.gather(change)
-        self.exact_events = len(structure.ends) <= EXACT_EVENTS
+        self.is_large = len(structure.ends) > EXACT_EVENTS
+        self.exact_events = structure.gives_way and not self.is_large
         self.scale = max(structure.largest(force), structure.largest(force + change))
         self.largest_move = math.inf if structure.first_order else LARGEST_MOVE
         self.reference = 0.0  # size of du/dt that counts as much as dt does; that of the first tangent
@@ -148,8 +149,11 @@ class Path:
         first, last = self.shares
         return last if t == 1.0 else first + t * (last - first)
 
-    def push(self, response: Response, soft: Flags | None = None) -> Array:
-        """The change of the load on the unknowns with t; distributed forces act on the bent axes, of which ends may flow."""
+    def push(self, response: Response, soft: Flags) -> Array:
+        """The change of the load on the unknowns with t; distributed forces act on the bent axes, of which ends may flow.
+
+        soft: what flows or is slack on the way.
+        """
         first, last = self.shares
         if first == last or response.bent is None:
             return self._dead_push
@@ -171,9 +175,9 @@ class Path:
             response = self.respond(displacement, response.plastic_strain, 0.0)
         return Point(displacement, response.plastic_strain, 0.0, response, 0.0)
 
-    def after(self, start: Point, displacement: Array, t: float) -> Point:
-        """The point with these displacements and t, yielding from an earlier one."""
-        response = self.respond(displacement, start.plastic_strain, t)
+    def after(self, start: Point, displacement: Array, t: float, response: Response | None = None) -> Point:
+        """The point with these displacements and t, yielding from an earlier one; response: of the rods, if it is known."""
+        response = response or self.respond(displacement, start.plastic_strain, t)
         spent = np.abs(response.force * (response.plastic_strain - start.plastic_strain))
         dissipated = start.dissipated + 1000.0 * float(of_axes(spent) @ self.structure.rest_length)
         if spent.ndim > 1:
@@ -488,7 +492,7 @@ class Path:
                 return None
             noise = structure.round_off(displacement, response) + 4.0 * ROUND_OFF * scale
             if size <= noise or (size >= 0.5 * before and size <= CONVERGED * scale + 64.0 * noise):
-                return self.after(start, displacement, t)
+                return self.after(start, displacement, t, response if piece is None else None)
             switched = soft is not None and not np.array_equal(response.soft, soft)
             if (switched or iteration > PATIENCE) and size >= before and share > SMALLEST_SHARE:
                 share *= HALF  # other rods are soft than in the tangent of the step: take less of it
@@ -635,7 +639,7 @@ class Path:
         lies on another branch, and the path goes on. An increment that fails is made smaller, and says nothing.
         """
         found, following, ahead, before = beyond.point, beyond.tangent, beyond.taken, math.inf
-        most = NARROWINGS if self.exact_events else FEW_NARROWINGS
+        most = FEW_NARROWINGS if self.is_large else NARROWINGS
         for _ in range(2 * most):
             least, opposed = (lowest(one.factor, self.structure.weight) for one in (tangent, following))
             if least <= NO_STIFFNESS and np.array_equal(tangent.soft, following.soft):

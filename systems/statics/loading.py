@@ -83,7 +83,8 @@ class Loading:
             matrix = structure.tangent(before.response, tangent.soft)
             modes = unresisted(structure, before.response, matrix, tangent.factor)
         self.mechanism = modes.shape[1] > 0
-        if not path.push(before.response).any():  # improve the equilibrium, or leave it if it is not stable
+        # No load: improve the equilibrium, or leave it if it is not stable.
+        if not path.push(before.response, tangent.soft).any():
             found = path.correct(self.point, self.point.displacement, 1.0, None)
             if found is None or not tangent.stable:
                 self._relax(1.0, None)
@@ -259,7 +260,7 @@ class Loading:
             return beyond.rate
         _, mode = softest(structure, response, beyond.soft)
         flow = structure.deformation_rates(mode, response) * np.sign(response.force) * beyond.flowing
-        push = self.path.push(response)
+        push = self.path.push(response, beyond.soft)
         pushed = float(mode @ push)
         lean = float(flow.sum()) if flow.any() else pushed
         if abs(pushed) <= _UNEXCITED * np.linalg.norm(mode) * np.linalg.norm(push):
@@ -285,7 +286,7 @@ class Loading:
             raise self._collapse(found.response.flowing, found.displacement - start.displacement)
 
     def _note_jump(self, beyond: Tangent, critical: Point, mode: Array) -> None:
-        push = self.path.push(critical.response)
+        push = self.path.push(critical.response, beyond.soft)
         share = abs(float(mode @ push)) / (np.linalg.norm(mode) * np.linalg.norm(push))
         where = moved(self.model, critical.displacement, self.point.displacement)
         if beyond.sense > 0.0 and share < _UNEXCITED:

@@ -142,7 +142,7 @@ class Curve:
                 " take exact theory, in which they have it.",
                 rods=rod_names(model, rows[:1]),
             )
-        loaded = external.scaled + structure.carried(structure.unmoved)
+        loaded = external.scaled + structure.carried(structure.unmoved, structure.unmoved.soft)
         if not structure.gather(loaded).any():
             raise WrongValue(
                 "No force or load acts in a free direction; apply one, which the load factor multiplies."

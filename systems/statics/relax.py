@@ -21,7 +21,7 @@ from pinjoint.systems.statics.follow import LARGEST_MOVE, NEWTON_ITERATIONS, SMA
 STEPS = 4000  # at most
 STALLED = 50  # steps that together go less far than one may: it is caught where its rods turn over
 _AIMED = 0.7  # of the longest step
-_STEP_CONVERGED = 1e-7  # of the force at its start
+_STEP_CONVERGED = 1e-2  # of the force at its start; smaller: slower, and the same equilibrium in the end
 _LARGEST_PENALTY = 1e9
 NUDGE = 1e-3  # of a rod's length: how far to push off an unstable equilibrium
 BALANCED = 1e-9  # of the largest force: what is left over in an equilibrium, be it unstable
@@ -109,29 +109,30 @@ def creep(
     """
     given = penalty
     while penalty < _LARGEST_PENALTY:
-        displacement = implicit_step(path, point, residual, penalty)
-        share = math.inf if displacement is None else travel(displacement)
-        if displacement is not None and share <= 1.0:
+        found = implicit_step(path, point, residual, penalty)
+        share = math.inf if found is None else travel(found.displacement)
+        if found is not None and share <= 1.0:
             least = 0.25 if penalty == given else 1.0
-            return path.after(point, displacement, point.t), penalty * max(share / _AIMED, least)
+            return found, penalty * max(share / _AIMED, least)
         penalty *= min(share / _AIMED, 3.0)
     return None
 
 
-def implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> Array | None:
-    """Displacements u with force − internal(u) = penalty × W (u − u₀), or None if Newton's method fails."""
+def implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> Point | None:
+    """The point whose displacements u have force − internal(u) = penalty × W (u − u₀); None if Newton's method fails."""
     structure = path.structure
     wanted = _STEP_CONVERGED * structure.greatest(residual)
-    moved, step = np.zeros(structure.size), np.zeros(structure.size)
+    found, moved, step = point, np.zeros(structure.size), np.zeros(structure.size)
     before, share, soft = np.inf, 1.0, point.response.soft
     for _ in range(NEWTON_ITERATIONS):
-        displacement = point.displacement + structure.spread(moved)
-        response = path.respond(displacement, point.plastic_strain, point.t)
+        if moved.any():
+            found = path.after(point, point.displacement + structure.spread(moved), point.t)
+        response = found.response
         pull = structure.gather(path.load(point.t) - structure.internal(response))
         pull -= penalty * structure.weight * moved
         size = structure.greatest(pull)
-        if size <= max(wanted, structure.round_off(displacement, response)):
-            return displacement
+        if size <= max(wanted, structure.round_off(found.displacement, response)):
+            return found
         if size >= before and share > SMALLEST_SHARE and not np.array_equal(response.soft, soft):
             share *= 0.5  # other rods are soft than in the tangent of the step: take less of it
             moved = moved - share * step

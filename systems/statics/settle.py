@@ -271,8 +271,9 @@ class _Settling:
         return held if of(held) > BALANCED * greatest else self._nothing
 
     def _carried(self) -> Array:
-        """What whole distributed forces would add, in free directions, to the particles' forces in the present state."""
-        return self.structure.of_unknowns(self.structure.carried(self.point.response))
+        """What whole distributed forces would add, in free directions, to the particles' forces if nothing flowed now."""
+        response = self.point.response
+        return self.structure.of_unknowns(self.structure.carried(response, np.zeros_like(response.soft)))
 
     def _held_factor(self) -> float:
         """The load factor of the forces that hold the present state; 0 if they are no scaled load."""

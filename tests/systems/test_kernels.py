@@ -122,3 +122,45 @@ def test_a_quotient_of_quotients_grows_with_each_once() -> None:
     assert len(in_lists(quotients).__code__.co_code) < 2000
     assert quotients(3.0, 7.0) == quotients.py_func(3.0, 7.0)
     assert math.isnan(quotients(0.0, 0.0))
+
+
+KEPT = """
+import sys
+from pinjoint.systems.program import interpreter
+
+rewritten_form, anew = interpreter._rewritten_form, []
+interpreter._rewritten_form = lambda plain, *given: anew.append(plain.__name__) or rewritten_form(plain, *given)
+sys.path.insert(0, {folder!r})
+import scaled
+print(scaled.grown(2.0), scaled.roots(-1.0), *anew)
+interpreter.keep_rewritten()
+"""
+SCALED = """
+import math
+from pinjoint.systems.program.kernel import compiled
+
+{constant}
+
+@compiled
+def grown(x):
+    return FACTOR * x
+
+@compiled
+def roots(x):
+    return math.sqrt(x)
+"""
+
+
+def test_what_is_rewritten_is_kept_until_it_or_a_constant_in_it_changes(
+    tmp_path: Path, fresh_process: Callable[..., str]
+) -> None:
+    def printed(constant: str, factor: float = 3.0) -> str:
+        (tmp_path / "scaled.py").write_text(SCALED.format(constant=constant))
+        (tmp_path / "factors.py").write_text(f"FACTOR = {factor}")
+        return fresh_process(KEPT.format(folder=str(tmp_path)), {"XDG_CACHE_HOME": str(tmp_path)}).strip()
+
+    assert printed("FACTOR = 2.0") == "4.0 nan grown roots"
+    assert printed("FACTOR = 2.0") == "4.0 nan"
+    assert printed("from factors import FACTOR") == "6.0 nan grown roots"
+    assert printed("from factors import FACTOR", 5.0) == "10.0 nan grown"
+    assert printed("from factors import FACTOR", 5.0) == "10.0 nan"
