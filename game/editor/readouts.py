@@ -165,7 +165,8 @@ def _equilibrium(context: Context) -> Iterator[Readout]:
         rest = (
             [(plural("and one more", "and {count} more", more), tr("select one to see it"))] if more > 0 else []
         )
-        yield Readout(tr("Free bodies: sums of forces ({unit})", unit=on_screen("kN")[0]), (*shown, *rest))
+        units = ", ".join(on_screen(unit)[0] for unit in ("kN", "kN·m")[: 1 + bends(model)])
+        yield Readout(tr("Free bodies: sums of forces ({unit})", unit=units), (*shown, *rest))
 
 
 def _parts(force: Force, forces: Sequence[Force]) -> str:

@@ -165,7 +165,7 @@ def _says(text: Text, shaft: Part, model: Model, row: int) -> bool:
     force = (applied if text.colour == LIGHT.load else particles.reaction)[row]
     step = np.abs(shaft.points[1] - shaft.points[0])
     size = abs(float(force[int(step[1] > step[0])]))
-    return text.text.removesuffix(" kN") == number(size)
+    return text.text.removesuffix(" kN") == (given(size, DIGITS) if text.colour == LIGHT.load else number(size))
 
 
 @pytest.mark.parametrize("moment", WINDOWS)

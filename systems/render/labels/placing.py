@@ -30,7 +30,10 @@ LEADER_OPACITY, _DOT = 0.75, 1.75  # of these lines, and points, radius of the d
 _TURNS = np.array([0, *(way * k for k in range(1, 8) for way in (1, -1)), 8]) * np.pi / 8.0  # from the best way
 _LENGTHS = (14.0, 26.0, 40.0, 58.0, 80.0, 110.0, 150.0, 200.0)  # points
 _WAYS = len(_TURNS) * len(_LENGTHS)  # of lines from one anchor
-_USUAL = 5  # of these lengths, of lines from values in their usual type
+_NEAR, _USUAL = (
+    3,
+    5,
+)  # of these lengths, of lines to values that need not cover a rod, and of lines from values in their usual type
 _STEP, _HALF = 4.0, 1.5  # points between the places where a line is tested; half the room it needs there
 _CLEAR, _OFF_DIAGRAMS = 3.0, 1.0  # points between a value and all else
 _NEAR_NUMBERS = (0.5, -1.0, 0.5), (0.5, -1.0, -1.0)  # points from numbers to lines, diagrams, symbols of others
@@ -110,7 +113,10 @@ def place_labels(
     if ranked:
         occupancy.parts.gather(np.concatenate([label.places for label in ranked]))
     values, names = ([label for label in ranked if (len(label.anchors) == 0) == name] for name in (False, True))
-    left = sorted(at.beside(values), key=Label.is_given)
+    left = at.beside(values, covering=False)
+    spare = at.led([n for n in left if n.lines == "spare"], range(1), _LENGTHS[:_NEAR], over=False)
+    left = [n for n in left if n.lines != "spare"] + at.beside(spare)
+    left.sort(key=lambda n: (n.is_given(), n.rank))
     for smaller, over in ((False, False), (True, False), (True, True)) if left else ():
         if smaller and not over:
             left = at.beside([label.smaller(unit) for label in left])
@@ -178,8 +184,8 @@ class _Placing:
                 left += [label] * bool(label.short)
         return sorted(left, key=lambda label: label.rank), numbers
 
-    def beside(self, labels: Sequence[Label]) -> list[Label]:
-        """Let labels stand at one of their places; returns those that cannot.
+    def beside(self, labels: Sequence[Label], *, covering: bool = True) -> list[Label]:
+        """Let labels stand at one of their places; returns those that cannot. covering: on rods and arrows in need.
 
         The places of each are tried in order, first a few of all labels, since most of them stand at one of these.
         """
@@ -195,7 +201,7 @@ class _Placing:
         clearly = ~held & np.array([label.backing is not None for label in labels])[of]
         own, kin = _codes(labels, occupancy)
         boxes, found = Boxes(middle, half, of), np.full(len(labels), -1)
-        tried = _attempts(labels, of, held, cells, occupancy)
+        tried = _attempts(labels, of, held, cells, occupancy, covering)
         number = np.arange(len(tried)) - np.searchsorted(of[tried], of[tried])
         for begin, end in pairwise((0, 3, 1000)):  # candidates: the nearest first, then all
             now = tried[(number >= begin) & (number < end) & (found[of[tried]] < 0)]
@@ -346,7 +352,9 @@ def _codes(labels: Sequence[Label], occupancy: Occupancy) -> tuple[Codes, Codes]
     return np.array(own, dtype=np.int64), np.array(of, dtype=np.int64)
 
 
-def _attempts(labels: Sequence[Label], of: Rows, held: Truths, cells: Rows, occupancy: Occupancy) -> Rows:
+def _attempts(
+    labels: Sequence[Label], of: Rows, held: Truths, cells: Rows, occupancy: Occupancy, in_need: bool
+) -> Rows:
     """The places free of panels and lines, all of one label in the order in which to try them, then those of the next.
 
     of: the label of each place. held: whether the label was there in the last picture. cells: (k, 4) of each place.
@@ -357,7 +365,7 @@ def _attempts(labels: Sequence[Label], of: Rows, held: Truths, cells: Rows, occu
     attempts = [np.empty(0, dtype=np.intp)]
     for lines, coverings in _COVERED.items():
         theirs = np.flatnonzero((kinds == lines)[of])
-        for covering in coverings if len(theirs) else ():
+        for covering in (coverings if in_need else coverings[:1]) if len(theirs) else ():
             possible = theirs[free[covering][theirs]]
             attempts += [possible[held[possible]], possible]
     tried = np.concatenate(attempts)

@@ -29,6 +29,7 @@ from pinjoint.systems.render.model.values import (
     half_sizes,
     most_important,
     said,
+    stated,
     write,
 )
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
@@ -91,7 +92,7 @@ def steady(sheet: Sheet, key: tuple[str, int], largest: float) -> float:
 
 
 def draw_loads(sheet: Sheet) -> None:
-    """The force on each particle, its loads at full size included, where no diagram shows it."""
+    """The force on each particle, its loads at full size included, where no diagram shows it; in statics its size, too."""
     model = sheet.model
     force = full_load(model)[:, :2]
     loaded = (force[:, 0] != 0.0) | (force[:, 1] != 0.0)
@@ -105,7 +106,9 @@ def draw_loads(sheet: Sheet) -> None:
     crowd = crowding(sheet, rows)
     pushes = crowd[rows, (ahead + 2) % 4] <= crowd[rows, ahead] + 0.1  # towards the particle, if there is room
     of = whose(model, rows, loads_only=True)
-    _draw_at_rims(sheet, of, rows, along, length, sheet.theme.load, "load", pushes)
+    ends = _draw_at_rims(sheet, of, rows, along, length, sheet.theme.load, "load", pushes)
+    if model.solution is not None and len(rows) <= FEW_VALUES:
+        _write_forces(sheet, "load", of, ("particles.load", rows), size, *ends)
 
 
 def draw_velocities(sheet: Sheet) -> None:
@@ -147,13 +150,15 @@ def _draw_at_rims(
     colour: Colour,
     name: str,
     pushes: Truths | bool = False,
-) -> None:
-    """Arrows from the rims of particles outwards, or (pushes) ending there."""
-    reach = (sheet.radii[rows] + OFF * sheet.unit)[:, None] * along
-    back = -reach - length[:, None] * along
-    tail = sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), back, reach)
-    sheet.explain(name, tail, tail + length[:, None] * along)
+) -> tuple[Points, Points]:
+    """Arrows from the rims of particles outwards, or (pushes) ending there; returns their ends at the rims and outside."""
+    outward = along * np.where(np.reshape(pushes, (-1, 1)), -1.0, 1.0)
+    rim = sheet.centres[rows] + (sheet.radii[rows] + OFF * sheet.unit)[:, None] * outward
+    end = rim + length[:, None] * outward
+    sheet.explain(name, rim, end)
+    tail = np.where(np.reshape(pushes, (-1, 1)), end, rim)
     draw_arrows(sheet, of, tail, along, length, colour, (f"particles.{name}", rows))
+    return rim, end
 
 
 def head_length(length: Values, unit: float) -> Values:
@@ -317,8 +322,8 @@ def _write_forces(
     seen = np.flatnonzero(sheet.sees(0.5 * (start + end)))
     shown, worth = most_important(sheet, field, which, value, seen)
     cases = [case_told(sheet.model, *of[index]) for index in shown.tolist()]
-    sizes = zip(np.abs(value[shown]).tolist(), cases, strict=True)
-    texts = [f"{said(sheet, size, 'kN', bare=not few)}{case}" for size, case in sizes]
+    sizes, told = np.abs(value[shown]).tolist(), stated if name == "load" else said
+    texts = [f"{told(sheet, size, 'kN', bare=not few)}{case}" for size, case in zip(sizes, cases, strict=True)]
     font = sheet.font(12.0 if few else 11.0)
     half, start, end = half_sizes(sheet, texts, font), start[shown], end[shown]
     places = by_arrows(half, start, end, 5.5 * sheet.unit)  # points
@@ -338,5 +343,5 @@ def _write_forces(
             own=key,
             leads=leads,
             size=font,
-            short=said(sheet, abs(float(value[index])), "kN", bare=True) if few else "",
+            short=told(sheet, sizes[k], "kN", bare=True) if few else "",
         )

@@ -470,7 +470,7 @@ def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:
     constant = ends[middle, 0] if quantity == AXIAL else np.abs(ends[middle, 0])
     middle = middle[~_continued(sheet, diagram.rows[middle], constant, largest)]
     told[same] = False
-    if quantity == MOMENT:
+    if quantity != AXIAL:
         told &= ~_repeated(sheet, diagram, ends)
     rod, end = np.nonzero(told)
     return (
@@ -491,10 +491,12 @@ def _continued(sheet: Sheet, rows: Rows, constant: Values, largest: float) -> Tr
 
 
 def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values) -> Truths:
-    """Ends of rods whose moment another end at the same joint tells, or that are no extreme of a member, (n, 2)."""
+    """Ends of rods whose moment another end at the same joint tells, or that are no extreme of a member, (n, 2); likewise
+    ends from which a member goes straight on with the same shear force."""
     rows, repeated = diagram.rows, np.zeros(ends.shape, dtype=bool)
     joints = sheet.ends[rows]
-    at = np.bincount(sheet.ends[sheet.model.rods.turning_shares > 0.0], minlength=len(sheet.centres))
+    counted = sheet.ends[sheet.model.rods.turning_shares > 0.0] if diagram.quantity == MOMENT else sheet.ends
+    at = np.bincount(counted.ravel(), minlength=len(sheet.centres))
     slope = diagram.curves.derivative.at(np.array([0.0, 1.0])) * [1.0, -1.0]  # away from the end
     slope = slope / np.maximum(sheet.model.rods.rest_length[rows], 1e-300)[:, None] * np.sign(ends)
     way = (diagram.points[:, -1] - diagram.points[:, 0])[:, None] * np.array([[1.0], [-1.0]])
@@ -503,11 +505,17 @@ def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values) -> Truths:
     shared = shared[np.argsort(joints.ravel()[shared], kind="stable")]
     pairs = np.flatnonzero(np.diff(joints.ravel()[shared]) == 0)
     one, other = shared[pairs], shared[pairs + 1]
-    first, second = np.abs(ends.ravel()[one]), np.abs(ends.ravel()[other])
-    same = np.abs(first - second) <= 1e-3 * np.maximum(first, second)  # told once
+    first, second = (
+        np.abs(ends.ravel()[which]) if diagram.quantity == MOMENT else ends.ravel()[which]
+        for which in (one, other)
+    )
+    same = np.abs(first - second) <= 1e-3 * np.maximum(np.abs(first), np.abs(second))  # told once
     one, other = one[same], other[same]
     way, slope = way.reshape(-1, 2), slope.ravel()
     straight = (way[one] * way[other]).sum(axis=1) < -0.9  # cosine of the turn
+    if diagram.quantity == SHEAR:
+        repeated.ravel()[other[straight]] = True
+        return repeated
     repeated.ravel()[other] = True
     repeated.ravel()[one[straight & (slope[one] * slope[other] < 0.0)]] = True  # the moment passes through
     return repeated

@@ -19,7 +19,7 @@ from pinjoint.systems.render.marks import Owner, Points, Strokes, Truths, Values
 from pinjoint.systems.render.model.arrows import FORCES, OFF, draw_arrows, lengths
 from pinjoint.systems.render.model.members import draw_arcs, gaps, write_moment
 from pinjoint.systems.render.model.sheet import Sheet
-from pinjoint.systems.render.model.values import SMALLEST, beside, by_arrows, half_sizes, off, write
+from pinjoint.systems.render.model.values import SMALLEST, beside, by_arrows, half_sizes, off, stated, write
 from pinjoint.systems.render.theme import Colour
 
 MOST = 150  # rods that are taken apart: of more, arrows would hide one another
@@ -183,7 +183,8 @@ def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) ->
         draw_arrows(sheet, [of], tail[None], out[None], np.array([length]), colour, part)
         sheet.legend.append(force.kind)
         key = f"particles.{force.name}"
-        _write(sheet, written.force(size), by_arrows, colour, (key, row), of, (rim, rim + length * side))
+        text = stated(sheet, size, "kN") if force.kind == "load" else written.force(size)
+        _write(sheet, text, by_arrows, colour, (key, row), of, (rim, rim + length * side))
 
 
 def _directions_of_rods(sheet: Sheet, row: int) -> list[Points]:
@@ -205,7 +206,8 @@ def _write(
     of: Owner,
     own: tuple[Points, Points],
 ) -> None:
-    """A value at one of the places in sight that are nearer to its own arrows, a line from and to, than to other rods.
+    """A value at one of the places in sight that are nearer to its own arrows, a line from and to, than to other rods, else
+    at the end of a line that leads there.
 
     places: or what finds them from half the size of the value, the line and the gap.
     """
@@ -215,7 +217,9 @@ def _write(
     others = sheet.rods != (of[1] if of[0] == "rods" else -1)
     away = distance_to_segments(at[:, None], sheet.start[others], sheet.end[others]).min(axis=1, initial=np.inf)
     nearest = at[distance_to_segments(at, *own) < away]
-    if len(nearest):
-        write(sheet, text, nearest, colour, key, of, lines="avoid")
-    elif len(at):
-        sheet.values[key[0]] += 1
+    way = own[1] - own[0]
+    out = np.array([way[1], -way[0]]) / max(float(np.hypot(*way)), 1e-9)
+    along, off_it = np.repeat([0.5, 0.8, 0.2], 2)[:, None] * way, np.tile([1.0, -1.0], 3)[:, None] * out
+    leads = own[0] + along + _APART * sheet.unit * off_it, out
+    if len(at):
+        write(sheet, text, nearest, colour, key, of, leads=leads, lines="avoid", short=text)

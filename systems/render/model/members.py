@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from pinjoint.components import written
 from pinjoint.components.arrays import Rows
 from pinjoint.components.bent import Axes
 from pinjoint.components.cases import case_told, factor_of_each, permanent
@@ -32,6 +31,7 @@ from pinjoint.systems.render.model.values import (
     half_sizes,
     off,
     said,
+    stated,
     write,
     write_around,
     write_spring,
@@ -235,7 +235,7 @@ def _draw_points(sheet: Sheet, spans: Spans) -> None:
         sheet.explain("load", tail, tip)
         for k, value in enumerate(size.tolist()):
             key = "span_loads.force", int(load[some[k]])
-            text = f"{written.stated(value, 'kN', written.DIGITS)}{case_told(sheet.model, *key)}"
+            text = f"{stated(sheet, value, 'kN')}{case_told(sheet.model, *key)}"
             places = by_arrows(half_sizes(sheet, [text])[0], tip[k], tail[k], 3.0 * u)
             leads = np.array([tail[k], 0.5 * (tail[k] + tip[k])]), -along[k]
             write(
@@ -308,7 +308,7 @@ def _shares_seen(sheet: Sheet, spans: Spans, length: Values) -> tuple[Values, Va
 def _label_row(
     sheet: Sheet, key: tuple[str, int], row: int, tails: Points, out: Points, size: float, shifted: bool
 ) -> None:
-    text, u = f"{written.stated(size, 'kN/m', written.DIGITS)}{case_told(sheet.model, *key)}", sheet.unit
+    text, u = f"{stated(sheet, size, 'kN/m')}{case_told(sheet.model, *key)}", sheet.unit
     way = tails[-1] - tails[0]
     if shifted:
         out = np.array([way[1], -way[0]]) / max(float(np.hypot(*way)), 1e-9)
@@ -409,8 +409,7 @@ def write_moment(
     of: Owner | None = None,
 ) -> None:
     """Write the size of a moment outside its arrow; text: in place of the number as a person gave it; of: not a particle."""
-    bare = written.given(abs(moment), written.DIGITS)
-    text = text or (written.stated(abs(moment), "kN·m", written.DIGITS) if sheet.view.has_units else bare)
+    text = text or stated(sheet, abs(moment), "kN·m")
     short = text if key[0] == "particles.reaction_moment" else ""
     whose = key, of or ("particles", key[1]), key
     write_around(sheet, at, radius, _AROUND, text, colour, whose, abs(moment), short)

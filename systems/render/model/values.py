@@ -34,6 +34,14 @@ def said(sheet: Sheet, value: float, usual: str, nothing: float = SMALLEST, *, b
     return written.amount(value, usual, nothing=nothing, bare=bare)
 
 
+def stated(sheet: Sheet, value: float, usual: str, *, bare: bool = False) -> str:
+    """A value that a person gave, likewise, without zeros at its end."""
+    if not sheet.view.has_units:
+        return written.given(value, written.DIGITS)
+    text = written.stated(value, usual, written.DIGITS)
+    return text.partition(" ")[0] if bare else text
+
+
 def reach(way: Points, half: Points) -> Values:
     """How far labels of `half` the size (…, 2) extend along unit vectors (…, 2), or points to all sides of them."""
     found: Values = np.abs(way) * half
@@ -115,9 +123,7 @@ def write_spring(
     sheet: Sheet, at: Points, radius: float, stiffness: float, unit: str, key: tuple[str, int], of: Owner
 ) -> None:
     """Write the stiffness of a spring beside its symbol."""
-    bare = written.given(stiffness, written.DIGITS)
-    text = f"k = {written.stated(stiffness, unit, written.DIGITS) if sheet.view.has_units else bare}"
-    write_beside(sheet, at, radius, text, key, of)
+    write_beside(sheet, at, radius, f"k = {stated(sheet, stiffness, unit)}", key, of)
 
 
 def write_beside(sheet: Sheet, at: Points, radius: float, text: str, key: tuple[str, int], of: Owner) -> None:

@@ -40,6 +40,18 @@ def test_a_force_is_seen_without_its_diagram_and_only_then() -> None:
     assert len(tips(model)) == 2
 
 
+def test_loads_say_their_size_in_statics_also_without_diagrams() -> None:
+    session = Session.open("hyperstatic")
+    session.particles["C"].force = (3.0, -4.0)
+    session.update_view()
+    (model, view), *_ = session.stages
+    assert "5 kN" not in compose(model, view, LIGHT).texts
+    for key in ("q", "i"):
+        session.press(key)
+    session.update_view()
+    assert "5 kN" in compose(model, view, LIGHT).texts
+
+
 def test_a_load_pushes_from_outside_where_rods_are_on_the_other_side() -> None:
     model = triangle()
     [load] = model.create(Load, 1, on=[1], force=[(0.0, -10.0)])

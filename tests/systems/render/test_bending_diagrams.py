@@ -102,6 +102,26 @@ def test_shear_is_signed_and_hatched() -> None:
     ]
 
 
+def test_shear_forces_of_a_gerber_beam_are_told_once_and_off_the_rows_of_loads() -> None:
+    session = Session.open("gerber_beam")
+    session.resize(1280, 800)
+    session.press("i")
+    session.update_view()
+    (model, view), *_ = session.stages
+    picture = compose(model, view, LIGHT)
+    texts = [
+        mark for mark in picture.marks if isinstance(mark, Text) and mark.text[1:] in ("20.00 kN", "40.00 kN")
+    ]
+    assert sorted(text.text for text in texts) == ["+20.00 kN"] * 2 + ["+40.00 kN"] * 2 + [
+        "−20.00 kN",
+        "−20.00 kN",
+        "−40.00 kN",
+        "−40.00 kN",
+    ], "of equal ones to both sides of a hinge one"
+    axis = view.camera.to_pixels((0.0, 0.0))[1]
+    assert all(abs(text.y - axis) > 25.0 for text in texts), "of 7 px the row, the text and the room around it"
+
+
 def test_values_extremes_and_zero_points_of_a_portal() -> None:
     picture, session = shown(portal_at_rest(), MOMENT)
     texts = picture.texts

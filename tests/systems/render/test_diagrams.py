@@ -16,9 +16,9 @@ from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, tri
 
 def test_values_of_the_thesis_triangle() -> None:
     texts = picture_of(triangle(), all_diagrams=True).texts
-    for value in ("−28.34", "−198.0", "20.07", "120.0", "160.0", "20.01", "140.0"):
+    for value in ("−28.34", "−198.0", "20.07", "120.0", "20.01", "140.0"):
         assert f"{value} kN" in texts
-    assert texts.count("120.0 kN") == 2  # the load at B and the reaction at C
+    assert {"120 kN", "160 kN"} <= set(texts)  # the load at B, as it was given
     assert {"A", "B", "C", "AB", "BC", "CA"} <= set(texts)
 
 
@@ -122,4 +122,4 @@ def test_arrows_point_along_the_force_and_meet_the_rim() -> None:
         assert np.linalg.norm(tail - pixels[row]) == pytest.approx(radius + 2.0)
     lengths = {row: np.hypot(*whole) for row, (_, whole) in by_row.items()}
     assert lengths[2] == pytest.approx(1.5 * lengths[1])
-    assert {"1.000 kN", "2.000 kN", "3.000 kN", "0.0001100 kN"} <= set(picture.texts)
+    assert {"1 kN", "2 kN", "3 kN", "0.0001100 kN"} <= set(picture.texts)

@@ -8,6 +8,7 @@ from pinjoint.components.view import drawn_positions
 from pinjoint.systems.render.marks import Fills, Picture, Strokes, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
+from tests.golden.test_nearness import leader
 
 LIGHT = load_theme("light")
 
@@ -104,10 +105,18 @@ def test_no_value_of_a_rod_is_nearer_to_another(model: str, size: tuple[int, int
     session = apart(model, size)
     places = session.view.camera.to_pixels(drawn_positions(session.model))
     start, end = places[session.model.rods.between.astype(int).T]
-    for mark in picture_of(session).marks:
+    picture = picture_of(session)
+    for mark in picture.marks:
         if isinstance(mark, Text) and mark.of is not None and mark.of[0] == "rods" and mark.text.endswith("kN"):
-            distance = distances(np.array([mark.x, mark.y]), start, end)
+            line = leader(mark, picture)
+            distance = distances(np.array([mark.x, mark.y]) if line is None else line[1], start, end)
             assert distance.argmin() == mark.of[1], mark
+
+
+@pytest.mark.parametrize("model", ["isostatic", "hyperstatic", "portal", "two_storey_frame", "gerber_beam"])
+def test_all_values_of_small_structures_are_told(model: str) -> None:
+    session = apart(model, (1280, 800))
+    assert not [text for text in picture_of(session).texts if "hidden" in text]
 
 
 def distances(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:

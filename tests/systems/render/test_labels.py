@@ -191,7 +191,7 @@ def test_values_of_many_forces_leave_the_rods_to_their_own_where_there_is_room()
     view = view_of(model, 400, 2400, all_diagrams=True)
     picture = compose(model, view, LIGHT)
     middle = view.camera.to_pixels((0.0, 0.0))[0]
-    forces = [mark for mark in marks_of(picture, Text, LIGHT.load) if mark.text == "0.2500"]
+    forces = [mark for mark in marks_of(picture, Text, LIGHT.load) if mark.text == "0.25"]
     assert len(forces) == count
     inside = [mark for mark in forces[1:] if abs(mark.x - middle) < 10.0]
     assert len(inside) <= 1  # below the lowest particle there is no rod

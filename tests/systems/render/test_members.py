@@ -259,7 +259,7 @@ def test_reactions_turn_in_diagrams() -> None:
     assert "28.12 kN·m" in picture.texts
     assert [m for m in picture.marks if isinstance(m, Strokes) and m.colour == LIGHT.reaction]
     loads = {text for text in picture.texts if text.endswith(" kN")}
-    assert "10.00 kN" in loads
+    assert "10 kN" in loads
     assert "36.00 kN" not in loads, "the arrows of the distributed force show it"
 
 
