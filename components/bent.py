@@ -26,7 +26,7 @@ from pinjoint.components.derived import (
 from pinjoint.components.model import Model
 from pinjoint.components.rod import has_struts
 from pinjoint.components.settings import DIAGRAMS
-from pinjoint.components.spans import Curves, Kinks, Stretches, extremes
+from pinjoint.components.spans import Curves, Kinks, Stretches, extremes, groups
 
 AXIAL, MOMENT, SHEAR = DIAGRAMS
 FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn of it
@@ -74,11 +74,13 @@ class Axes:
         (state, _), known = _states(model), model.bent[2]
         scale = drawn_scale(model) if scale is None else scale
         if scale not in known:
-            particles, ends, drift = model.particles, model.rods.between.astype(np.intp).T, _drift(state)
+            particles, ends = model.particles, model.rods.between.astype(np.intp).T
+            drift = _drift(state) if scale else None
             with np.errstate(invalid="ignore"):  # see there
                 start, end = (particles.position + particles.displacement * scale)[ends]
                 drift = None if drift is None else drift.times(scale)
-                known[scale] = cls(start, end, state.left, state.bow.times(scale), drift)
+                bow = state.bow.times(scale) if scale else Curves.plain(np.zeros((len(start), 1)))
+                known[scale] = cls(start, end, state.left, bow, drift)
         every: Axes = known[scale]
         return every.some(rows)
 
@@ -136,16 +138,10 @@ class Axes:
             return None
         least = np.array([2, 4, 8, 16, _MOST_PIECES])
         count = least[np.minimum(np.searchsorted(least, wanted[curved]), len(least) - 1)]
-        starts, ends, of = [], [], []
-        for number in np.unique(count).tolist():
-            some = curved[count == number]
-            points = self.some(some).points(np.linspace(0.0, 1.0, number + 1))
-            starts.append(points[:, :-1].reshape(-1, 2))
-            ends.append(points[:, 1:].reshape(-1, 2))
-            of.append(np.repeat(rows[some], number))
-        row = np.concatenate(of)
-        order = np.argsort(row, kind="stable")
-        return Lines(np.concatenate(starts)[order], np.concatenate(ends)[order], row[order])
+        of, number = groups(np.zeros_like(count), count + 1)
+        points = self.some(curved[of]).points((number / count[of])[:, None])[:, 0]
+        first = np.flatnonzero(of[:-1] == of[1:])
+        return Lines(points[first], points[first + 1], rows[curved[of[first]]])
 
 
 def drawn_scale(model: Model) -> float:

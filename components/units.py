@@ -50,7 +50,7 @@ _NAMES = "|".join(map(re.escape, sorted(_SYMBOLS, key=len, reverse=True)))  # kN
 _MARKS = "·*./ "
 _PART = re.compile(rf"([{_MARKS}]?)({_NAMES})(?:\^?(-?\d)|(⁻?[²³⁴⁶]))?")
 _RAISED = str.maketrans("²³⁴⁶⁻", "2346-")
-_WITH_UNIT = re.compile(r"(.*?[\d.]) ?([^\d\s.eE].*)")
+_WITH_UNIT = re.compile(r"(.*?[\d.]) ?([^\d\s.,;()eE].*)")
 # What people choose on screen, by name; "" are the usual units, of which the others replace those of the same kind.
 USUAL = "cm kN"
 PRESETS = {

@@ -34,6 +34,7 @@ Background = Literal["theme", "white", "transparent"]
 _IMAGES = ".png", ".jpg", ".bmp"
 _WHITE = (255, 255, 255, 255)
 _USUAL = 1280, 800  # pixels; in larger pictures type and lines grow
+SIDES = range(16, 16385)  # pixels
 
 
 def render(
@@ -48,6 +49,12 @@ def drawn(
     session: Session, suffix: str, size: Size, theme: str = "light", background: Background = "theme"
 ) -> bytes:
     """A session as the content of a file with that suffix."""
+    if not all(side in SIDES for side in size):
+        raise WrongValue(
+            "{width} x {height} is no size of a picture; give whole numbers of pixels, each from 16 to 16384.",
+            width=size[0],
+            height=size[1],
+        )
     exaggerate(session)
     session.update_view()
     view = on_paper(session.view, Camera(viewport=Viewport(0, 0, *size)))

@@ -108,7 +108,7 @@ class Session(Headless):
     def picture(self, path: str | Path, size: tuple[int, int] = (1280, 800), theme: str = "light") -> None:
         """Draw what is shown now to a .png, .svg, .pdf, .jpg or .bmp file; without bars and panels.
 
-        Raises ValueError for other files, OSError if it cannot be written.
+        Raises ValueError for other files and sizes, OSError if it cannot be written.
         """
         from pinjoint.pictures import render
 

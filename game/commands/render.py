@@ -282,7 +282,7 @@ def _times(session: Session, until: float | None, limit: float) -> Iterator[floa
 def _size(text: str) -> tuple[int, int]:
     found = re.fullmatch("([0-9]{2,5})x([0-9]{2,5})", text)
     width, height = map(int, found.groups()) if found else (0, 0)
-    if not (16 <= width <= 16384 and 16 <= height <= 16384):
+    if width not in pictures.SIDES or height not in pictures.SIDES:
         raise UsageError(
             "--size {size}: write width x height in pixels, such as 1280x800, each from 16 to 16384.", size=text
         )

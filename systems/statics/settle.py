@@ -40,7 +40,7 @@ from pinjoint.systems.statics.explain import (
     slack_named,
 )
 from pinjoint.systems.statics.external import External, loose_bodies
-from pinjoint.systems.statics.factor import SURELY_HELD, regular, soft_modes, softest
+from pinjoint.systems.statics.factor import SURELY_HELD, resists, soft_modes, softest
 from pinjoint.systems.statics.follow import Path, Point
 from pinjoint.systems.statics.loading import Loading, first_order_mechanism
 from pinjoint.systems.statics.relax import BALANCED
@@ -389,7 +389,7 @@ class _Settling:
         structure, response = self.structure, self.point.response
         if structure.first_order and not response.soft.any():
             return self._theory.held
-        return regular(structure.tangent(response, response.soft), structure.weight, -SURELY_HELD).definite
+        return resists(structure.tangent(response, response.soft), structure.weight, -SURELY_HELD)
 
     def _check_balance(self, factor: float) -> None:
         """Report forces that rounding leaves unbalanced. Raises NoEquilibrium if they are many."""
@@ -417,12 +417,9 @@ class _Settling:
 
     def _residual(self) -> float:
         """The largest unbalanced force over the largest force so far."""
-        response = self.point.response
-        structure = self.structure
+        structure, response = self.structure, self.point.response
         self.largest = max(self.largest, structure.largest(self.load), structure.largest_force(response))
-        unbalanced = structure.internal(response) - self.load
-        unbalanced = unbalanced - structure.of_supports(unbalanced)
-        return structure.largest(unbalanced) / self.largest if self.largest > 0.0 else 0.0
+        return structure.unbalanced(response, self.load) / self.largest if self.largest > 0.0 else 0.0
 
     def _note_slender(self, factor: float) -> None:
         """Report, once, the rods that bend more than one cubic follows."""

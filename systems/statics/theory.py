@@ -16,7 +16,7 @@ from pinjoint.systems.statics.equations import SOFT, Structure, largest, normali
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External, loose_bodies
-from pinjoint.systems.statics.factor import SURELY_HELD, pseudo_random, regular, soft_modes, unresisted
+from pinjoint.systems.statics.factor import SURELY_HELD, pseudo_random, regular, resists, soft_modes, unresisted
 from pinjoint.systems.statics.response import Response, of_axes
 from pinjoint.systems.statics.state import STABLE, Start, StaticState
 
@@ -52,7 +52,7 @@ class FirstOrder:
     @cached_property
     def held(self) -> bool:
         """True if every motion is resisted, and by so much that no digits are lost."""
-        return regular(self._matrix, self._measure.weight, -SURELY_HELD).definite
+        return resists(self._matrix, self._measure.weight, -SURELY_HELD)
 
     def solve(self, right: Array) -> Array:
         """The unknowns under forces along them, (N,) or (N, k), not refined."""
@@ -191,8 +191,6 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
     supports = structure.of_supports(structure.field(start.displacement, start.rotation))
     theory = FirstOrder(model, structure)
     moved, elastic = theory.equilibrium(load, supports, start.permanent, factor, structure)
-    unbalanced = structure.internal(elastic) - load
-    unbalanced = unbalanced - structure.of_supports(unbalanced)
     forces = max(structure.largest(load), structure.largest_force(elastic))
     return StaticState.of(
         model,
@@ -203,7 +201,7 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
         load_factor=factor,
         acting=load,
         dissipated_plastic=0.0,
-        residual=structure.largest(unbalanced) / forces if forces > 0.0 else 0.0,
+        residual=structure.unbalanced(elastic, load) / forces if forces > 0.0 else 0.0,
         status=STABLE,
         message="",
         events=(),
@@ -250,8 +248,7 @@ def mechanisms(model: Model) -> Array:
         matrix = structure.initial_tangent
         count = regular(matrix, structure.weight, -SOFT).negative
         modes = soft_modes(matrix, structure.weight, most=min(_MOST_MODES, count))
-    fields = structure.fields(_localised(modes))
-    return np.array([normalised(field) for field in fields]).reshape(fields.shape)
+    return structure.motions(_localised(modes))
 
 
 def self_stress(model: Model) -> Array:

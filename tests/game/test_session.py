@@ -195,6 +195,9 @@ def test_a_script_sees_what_there_is(session: Session, tmp_path: Path) -> None:
     assert session._repr_png_().startswith(begins[".png"])
     with pytest.raises(ValueError, match=r"\.xyz: choose a file that ends with one of \.png"):
         session.picture(tmp_path / "x.xyz")
+    for size in ((0, 0), (-5, 100), (800.5, 600), (100_000, 100)):
+        with pytest.raises(ValueError, match=f"{size[0]} x {size[1]} is no size of a picture"):
+            session.picture(tmp_path / "x.png", size=size)
 
 
 def test_a_window_of_another_size_shows_the_whole_model_until_somebody_looks_closer(session: Session) -> None:

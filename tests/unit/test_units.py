@@ -51,7 +51,7 @@ def test_units_of_another_kind_are_refused_with_those_that_fit(text: str, unit: 
 
 
 def test_what_is_no_number_is_none() -> None:
-    for text in ("", "kN", "1 2 kN", "-"):
+    for text in ("", "kN", "1 2 kN", "-", "9,81", "1,5 kN", "1;2", "(1)"):
         with pytest.raises(DecimalException):
             inside(text, "kN")
 

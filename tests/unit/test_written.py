@@ -63,6 +63,7 @@ def test_what_a_person_set_is_as_short_as_it_is() -> None:
     assert written.vector((120.0, -160.5)) == "(120, −160.5)"
     assert written.place((0.0, 1e3)) == "(0, 100000) cm"
     assert written.given(100.0) == "100"
+    assert [written.given(21099238.4, digits) for digits in (7, 8)] == ["2.109924·10⁷", "2.1099238·10⁷"]
     assert written.share(0.875) == "87.5 %"
 
 

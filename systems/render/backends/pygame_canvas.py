@@ -141,11 +141,12 @@ class Canvas:
         fine = np.floor(np.minimum(np.maximum(mark.at, -1e6), 1e6) * _PHASES + 0.5).astype(np.int64)
         key = mark.symbol, mark.size, mark.unit, mark.ink, mark.hollow, mark.turns
         images, pairs = self._kept(key, dict), []
-        for x, y in fine.tolist():
-            if (phase := (x % _PHASES, y % _PHASES)) not in images:
-                images[phase] = _rendered(mark, phase[0] / _PHASES, phase[1] / _PHASES)
-            image, left, top = images[phase]
-            pairs.append((image, (x // _PHASES + left, y // _PHASES + top)))
+        whole, phases = fine // _PHASES, fine % _PHASES @ [_PHASES, 1]
+        for (x, y), phase in zip(whole.tolist(), phases.tolist(), strict=True):
+            if (found := images.get(phase)) is None:
+                found = images[phase] = _rendered(mark, phase // _PHASES / _PHASES, phase % _PHASES / _PHASES)
+            image, left, top = found
+            pairs.append((image, (x + left, y + top)))
         return pairs
 
     def _discs(self, surface: pygame.Surface, mark: Discs) -> None:

@@ -61,6 +61,7 @@ _ROOM, _SHARE = 1.25, 0.3  # of the room of force diagrams; of the largest shear
 _DASH = 4.0  # points, of the outlines of what is no equilibrium
 _NOTHING = 1e-3  # of the largest value: what is not told
 _ALIKE = 5e-3  # of the largest value: what counts as the same
+_IN_LINE = 1e-3  # sine of an angle between rods that nobody sees
 _INSIDE = 0.02  # share of a rod, from which on a zero point or an extreme is not at its end
 _ALONG = np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9])  # of how far the value of a rectangle can go along it
 # Between ends, and at one.
@@ -482,12 +483,15 @@ def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:
 
 
 def _continued(sheet: Sheet, rows: Rows, constant: Values, largest: float) -> Truths:
-    """Which rods with constant values go on from another one with the same, by a joint of these two only."""
+    """Which rods with constant values go on in a line from another one with the same, by a joint of these two only."""
     start, end = sheet.ends[rows].T
-    before = np.full(len(sheet.centres), np.nan)
-    before[end] = constant
+    before, rods = np.full((len(sheet.centres), 3), np.nan), sheet.model.rods
+    way = rods.difference[rows] / np.maximum(rods.original_length[rows], 1e-300)[:, None]
+    before[end] = np.column_stack([constant, way])
+    turned = np.abs(before[start, 1] * way[:, 1] - before[start, 2] * way[:, 0])
+    alike = np.abs(before[start, 0] - constant) <= _ALIKE * largest
     joined = np.bincount(sheet.ends.ravel(), minlength=len(sheet.centres)) == 2
-    return joined[start] & (np.abs(before[start] - constant) <= _ALIKE * largest)
+    return joined[start] & alike & (turned <= _IN_LINE)
 
 
 def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values) -> Truths:

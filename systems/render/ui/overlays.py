@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
@@ -192,7 +193,7 @@ def put_notice(paper: Paper, sheet: Sheet, ends: tuple[float, float]) -> None:
     width = max([widest + around, *(one.width(u) + 24.0 * u for one in offer)])
     height = whole.height(u, width)
     places = _for_notice(sheet, v, width, height, (top, min(bottom, v.bottom)))
-    left, upper = min(places, key=lambda at: _hidden(sheet, at, width, height))
+    left, upper = _least_hidden(sheet, places, width, height)
     sheet.occupancy.block(left, upper, width, height)
     paper.put(whole, Rectangle(left, upper, width, height))
     paper.marks += _progress(sheet, left + 12.0 * u, upper + height - 5.0 * u, width - 24.0 * u)
@@ -502,17 +503,23 @@ def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[floa
     places = [(first, low), ((first + last) / 2, low), (last, low), (first, high), (last, high)]
     places.append((first, max(high - _ROW * u, v.top)))  # beside the last row of the legend
     stays = sheet.placed.get(_SCALE, 0)  # where it was, while that is as free as any
-    best = min(
-        (stays, *(place for place in range(len(places)) if place != stays)),
-        key=lambda place: _hidden(sheet, places[place], width, height),
-    )
-    sheet.scales[_SCALE] = best
-    return places[best]
+    tried = sorted(places, key=lambda place: place != places[stays])
+    best = _least_hidden(sheet, tried, width, height)
+    sheet.scales[_SCALE] = places.index(best)
+    return best
 
 
-def _hidden(sheet: Sheet, at: tuple[float, float], width: float, height: float) -> tuple[bool, int]:
-    """Whether a box lies on something else, and how much it hides."""
-    return sheet.occupancy.is_taken(*at, width, height), sheet.occupancy.crossed(*at, width, height)
+def _least_hidden(
+    sheet: Sheet, places: Sequence[tuple[float, float]], width: float, height: float
+) -> tuple[float, float]:
+    """Where, of places, a box lies on nothing else, or else hides least, the first of several; left and top."""
+    best, least = places[0], (True, sys.maxsize)
+    for at in places:
+        hidden = sheet.occupancy.is_taken(*at, width, height), sheet.occupancy.crossed(*at, width, height)
+        best, least = (at, hidden) if hidden < least else (best, least)
+        if not any(hidden):
+            break
+    return best
 
 
 def _displacements(sheet: Sheet) -> list[str]:

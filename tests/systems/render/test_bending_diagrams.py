@@ -265,6 +265,16 @@ def test_all_values_of_a_portal_are_told(size: tuple[int, int]) -> None:
         assert {"2.600 kN", "32.40 kN", "20.58 kN·m"} <= set(said)
 
 
+def test_rods_at_an_angle_tell_their_shear_each_where_it_is_almost_the_same() -> None:
+    session = Session.open("three_hinged_arch")
+    session.resize(1280, 800)
+    for key in ("q", "z"):  # statics, exact
+        session.press(key)
+    session.update_view()
+    session.view.quantity = SHEAR
+    assert {"−15.13 kN", "−15.14 kN"} <= set(picture_of(session).texts)
+
+
 @pytest.mark.parametrize("size", SIZES)
 def test_diagrams_keep_off_the_legend(size: tuple[int, int]) -> None:
     session = bundled_at_rest(*size)
