@@ -18,6 +18,7 @@ from pinjoint.components.commands import Assign, Command, Create, Custom, Delete
 from pinjoint.components.field import MADE, Column, Field, FieldError, Role, same
 from pinjoint.components.handle import Handle, set_entity
 from pinjoint.components.language import joined, tr
+from pinjoint.components.latest import Latest
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.table import Table, flags, grown, table_of
 from pinjoint.components.wording import as_said, cut, missing, quoted
@@ -79,7 +80,7 @@ class World:
         self.context = f"pinjoint {next(_world_numbers)}"
         self.revision = 0
         self.structure = 0  # of the last creation or deletion
-        self._orders: tuple[int, dict[str, NDArray[np.int64]]] = (-1, {})
+        self._orders = Latest[dict[str, NDArray[np.int64]]]()  # by `structure`
         self._newest = dict.fromkeys(Role, 0)
         self.on_command: Callable[[Command], None] | None = None
         self.before_change: Callable[[], None] | None = None
@@ -175,9 +176,8 @@ class World:
     @property
     def orders(self) -> dict[str, NDArray[np.int64]]:
         """esper ids in row order by table, which later creations and deletions leave as they are."""
-        if self._orders[0] != self.structure:
-            self._orders = self.structure, {name: t.entities.copy() for name, t in self.tables.items()}
-        return self._orders[1]
+        tables = self.tables.items()
+        return self._orders.get(self.structure, lambda: {name: t.entities.copy() for name, t in tables})
 
     # --- reading and writing one value -------------------------------------------------------------
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from pinjoint.components.field import Role
 from pinjoint.components.free_body import Apart
+from pinjoint.components.latest import Latest
 from pinjoint.components.load import CONSTANT, static_factor
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bearing
@@ -42,17 +43,18 @@ class Assessment:
         self._simulation = simulation
         self._beginning: Snapshot | None = None
         self._disturbed_at, self._how = math.inf, ""  # the first step with an edit or a pull, and what it was
-        self._theories: tuple[int, Theories] | None = None
-        self._remarks: tuple[Moment, tuple[Event, ...]] | None = None
-        self._degrees: tuple[tuple[int, ...], Indeterminacy] | None = None
+        self._degrees, self._balanced, self._resting = Latest["Indeterminacy"](), Latest[bool](), Latest[bool]()
+        self._forget()
+
+    def _forget(self) -> None:
+        """Forget what follows from how the run began."""
+        self._theories, self._remarks = Latest["Theories"](), Latest[tuple[Event, ...]]()
         self._error: tuple[Moment, MeasuredError | None] | None = None
-        self._balanced: tuple[int, bool] | None = None
-        self._resting: tuple[int, bool] | None = None
 
     def begin(self, beginning: Snapshot) -> None:
         """A run begins in this state."""
         self._beginning, self._disturbed_at = beginning, math.inf
-        self._theories = self._remarks = self._error = None
+        self._forget()
 
     def disturb(self, how: str = "edited") -> None:
         """Note that the run is edited, pulled or settled at the present step; how: what a person calls it."""
@@ -76,10 +78,8 @@ class Assessment:
 
         begun = self._begun
         revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
-        if self._theories is None or self._theories[0] != revision:
-            start = Start.stored(partial(begun.column, self._model)) if begun else None
-            self._theories = revision, Theories.of(self._model, start)
-        return self._theories[1]
+        start = Start.stored(partial(begun.column, self._model)) if begun else None
+        return self._theories.get(revision, lambda: Theories.of(self._model, start))
 
     @property
     def indeterminacy(self) -> Indeterminacy:
@@ -87,9 +87,7 @@ class Assessment:
         from pinjoint.systems.statics.theory import Indeterminacy
 
         shape = tuple(self._model.version(name) for name in _SHAPE)
-        if self._degrees is None or self._degrees[0] != shape:
-            self._degrees = shape, Indeterminacy.of(self._model)
-        return self._degrees[1]
+        return self._degrees.get(shape, lambda: Indeterminacy.of(self._model))
 
     @property
     def _begun(self) -> Snapshot | None:
@@ -112,9 +110,9 @@ class Assessment:
         model = self._model
         if self.disturbed != "edited" or not self.is_small or model.clock.collision_state is not None:
             return True
-        if self._balanced is None or self._balanced[0] != model.revision:
-            self._balanced = model.revision, bool(model.particles.velocity.any()) or _balanced(model)
-        return self._balanced[1]
+        return self._balanced.get(
+            model.revision, lambda: bool(model.particles.velocity.any()) or _balanced(model)
+        )
 
     @property
     def in_equilibrium(self) -> bool:
@@ -124,10 +122,9 @@ class Assessment:
             return self.balanced
         if model.particles.velocity.any():
             return False
+        unsure = model.clock.collision_state is not None or not self.is_small
         at = model.newest(Role.DOCUMENT, Role.STATE)
-        if self._resting is None or self._resting[0] != at:
-            self._resting = at, model.clock.collision_state is not None or not self.is_small or _balanced(model)
-        return self._resting[1]
+        return self._resting.get(at, lambda: unsure or _balanced(model))
 
     @property
     def _rests(self) -> bool:
@@ -143,10 +140,7 @@ class Assessment:
         """How a run at rest differs from what a slowly growing load would have done; empty if unsure."""
         if not self._rests or not self._is_comparable():
             return ()
-        key = self._moment
-        if self._remarks is None or self._remarks[0] != key:
-            self._remarks = key, tuple(self.theories.remarks(self._model))
-        return self._remarks[1]
+        return self._remarks.get(self._moment, lambda: tuple(self.theories.remarks(self._model)))
 
     def error(self, most_work: float | None = None) -> MeasuredError | None:
         """The measured error of the displacements; None where it is not known.

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pinjoint.components import written
 from pinjoint.components.field import ENDS, Column, Role
 from pinjoint.components.language import joined, marked, plural, tr
+from pinjoint.components.latest import Latest
 from pinjoint.components.load import load_factor
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
@@ -62,12 +63,11 @@ class Chronicle:
     def __init__(self, model: Model, simulation: Simulation) -> None:
         self._model, self._simulation = model, simulation
         self._seen: list[Happening] = []
-        self._stands = (-1, False)  # revision of the document, and whether it is no mechanism
+        self._stands = Latest[bool]()  # whether the document is no mechanism
         # Names of slack cables, and of buckled struts, at the last look.
         self._given: dict[str, frozenset[str]] = {}
         self._looked = -1.0
-        self._yielded: tuple[Column, list[Happening]] = np.empty(0), []
-        self._struck: tuple[bytes, list[Happening], int] = b"", [], 0
+        self._yielded, self._struck = Latest[list[Happening]](), Latest[tuple[list[Happening], int]]()
         self._known: set[Happening] = set()
         self.newest: list[Happening] = []
         self._telling: list[tuple[Happening, float]] = []
@@ -115,16 +115,15 @@ class Chronicle:
         """Rods that came to a strength, those of one instant together."""
         if not can_yield(self._model):
             return []
-        rods = self._model.rods
-        at = rods.column("yielded_at")
-        if np.array_equal(at, self._yielded[0], equal_nan=True):
-            return self._yielded[1]
-        names, found = rods.column("name"), []
+        at = self._model.rods.column("yielded_at")
+        return self._yielded.get(at.tobytes(), lambda: self._yields_at(at))
+
+    def _yields_at(self, at: Column) -> list[Happening]:
+        names, found = self._model.rods.column("name"), []
         for time in np.unique(at[~np.isnan(at)]).tolist():
             some = tuple(names[at == time].tolist())
             said = plural("Rod {rods} yields.", "Rods {rods} yield.", len(some), rods=_listed(some))
             found.append(self._happening("yield", time, said, some))
-        self._yielded = at.copy(), found
         return found
 
     def _hinges(self) -> list[Happening]:
@@ -158,9 +157,7 @@ class Chronicle:
         time = impacts.time
         known = LOOKED_THROUGH if len(time) == count else 0  # of more than are kept, the first are not known
         first = time[:known]
-        if self._struck[0] != first.tobytes():
-            self._struck = first.tobytes(), *self._collisions(first)
-        _, told, shown = self._struck
+        told, shown = self._struck.get(first.tobytes(), lambda: self._collisions(first))
         if shown == count:
             return told
         last = float(time[-1]) if len(time) else self._model.clock.time
@@ -224,9 +221,8 @@ class Chronicle:
 
         model, rods = self._model, self._model.rods
         edited = model.newest(Role.DOCUMENT)
-        if self._stands[0] != edited:
-            self._stands = edited, not incomputable(model) and is_held(model, at_first=True)
-        if not (self._stands[1] and model.clock.steps) or is_held(model):
+        stands = self._stands.get(edited, lambda: not incomputable(model) and is_held(model, at_first=True))
+        if not (stands and model.clock.steps) or is_held(model):
             return
         yielding = np.flatnonzero(rods.yielding) if can_yield(model) else np.empty(0, dtype=np.intp)
         limit = np.minimum(rods.tension_limit, rods.compression_limit) / rods.stiffness

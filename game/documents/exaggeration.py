@@ -11,11 +11,11 @@ from pinjoint.components.field import Role
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.obstacles import obstacles
-from pinjoint.components.particle import spring_stiffness
 from pinjoint.components.round_numbers import round_down
 from pinjoint.documents.assessment import LARGEST
 from pinjoint.systems.edit.arrows import extent
 from pinjoint.systems.physics.pace import expected_response, loaded_mode
+from pinjoint.systems.statics.counting import Count
 
 DRAWN = 0.08  # of the structure's size: the largest displacement as drawn, at most, when a factor is chosen
 KEPT = (0.02, 0.25)  # of the size, drawn, within which a factor stays as it is
@@ -77,23 +77,16 @@ def _largest_expected(model: Model) -> float:
         return math.inf
     rods, (displacement, force) = model.rods, found
     yields = model.settings.plasticity & ((force > rods.tension_limit) | (force < -rods.compression_limit))
-    if _spare(model) <= 0 and (yields | rods.tension_only & (force < 0.0)).any():
+    if Count.of(model).degree <= 0 and (yields | rods.tension_only & (force < 0.0)).any():
         return math.inf  # it collapses
     return float(np.abs(displacement).max(initial=0.0))
-
-
-def _spare(model: Model) -> int:
-    """Rods, and their rigid ends, less free directions and rotations: below 0, a mechanism by its count."""
-    particles, rods = model.particles, model.rods
-    held = rods.count + np.count_nonzero(rods.turning_shares > 0.0) + np.count_nonzero(spring_stiffness(model))
-    return int(held - np.count_nonzero(particles.mobility > 0.0) - np.count_nonzero(particles.turning > 0.0))
 
 
 def _moves_far(model: Model) -> bool:
     """True if anything moves freely: a mechanism by its count of rods, a loose particle, one that meets an obstacle."""
     particles, rods = model.particles, model.rods
     free = particles.mobility > 0.0
-    if not rods.count or _spare(model) < 0 or (model.settings.collisions and len(obstacles(model))):
+    if not rods.count or Count.of(model).degree < 0 or (model.settings.collisions and len(obstacles(model))):
         return True
     jointed = np.zeros(particles.count, dtype=bool)
     jointed[rods.between.ravel()] = True

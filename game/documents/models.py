@@ -27,23 +27,11 @@ from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import reason_of
 from pinjoint.components.model import Model
 from pinjoint.components.wording import nearest, quoted
-from pinjoint.documents.document import document, parse
-from pinjoint.documents.format import ModelError
+from pinjoint.documents.document import document as document
+from pinjoint.documents.document import parse as parse
+from pinjoint.documents.format import ModelError as ModelError
 
 LEFT = 3600.0  # s after which nobody writes to the file of a save any more
-
-__all__ = [
-    "ModelError",
-    "bundled",
-    "document",
-    "header_of",
-    "laid_out",
-    "load",
-    "name_of",
-    "parse",
-    "replace",
-    "save",
-]
 
 
 def bundled() -> list[str]:

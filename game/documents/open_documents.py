@@ -13,6 +13,7 @@ import numpy as np
 from pinjoint.components.clock import PersistentContacts
 from pinjoint.components.field import SAVED, Column, Role
 from pinjoint.components.language import joined, plural, tr
+from pinjoint.components.latest import Latest
 from pinjoint.components.load import load_ends
 from pinjoint.components.model import Model
 from pinjoint.components.particle import of_rigid_supports
@@ -84,7 +85,7 @@ class OpenDocument:
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
         self.statics = Statics(model, self._permanent_undeformed)
-        self._enveloped: tuple[object, Envelope | None] = None, None
+        self._enveloped = Latest["Envelope"]()
         self.exaggeration = Exaggeration(model)
         self.chronicle = Chronicle(model, self.simulation)
         self.file = file
@@ -110,11 +111,7 @@ class OpenDocument:
     def envelope(self, path: Sequence[str] = ()) -> Envelope:
         """That of all combinations in statics, or of a force along a path, found anew after an edit. Raises ValueError."""
         of = self.model.newest(Role.DOCUMENT), tuple(path)
-        if self._enveloped[0] != of or self._enveloped[1] is None:
-            self._enveloped = of, self.statics.envelope(path=path)
-        found = self._enveloped[1]
-        assert found is not None
-        return found
+        return self._enveloped.get(of, lambda: self.statics.envelope(path=path))
 
     @property
     def is_undeformed(self) -> bool:

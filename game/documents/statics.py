@@ -20,6 +20,7 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.field import Column, Role
 from pinjoint.components.language import joined, marked, plural, tr
+from pinjoint.components.latest import Latest
 from pinjoint.components.model import Model
 from pinjoint.components.rod import can_collapse, nodes
 from pinjoint.components.theory import EXACT, FIRST_ORDER
@@ -56,7 +57,7 @@ class Statics:
         self._of: tuple[object, ...] = ()
         self._sought: tuple[object, ...] = ()  # what it follows from that was sought last
         self._solving: Behind[Settlement] | None = None
-        self._comparing: tuple[int, Behind[Settlement]] | None = None  # with the revision
+        self._comparing = Latest[Behind["Settlement"]]()  # by revision
         self._way: tuple[int, Behind[Settlement]] | None = None  # the same, of states on the way
         self._seen = -1  # the revision of the model up to which it is known that nothing changed
         self._columns: Mapping[str, Column] = {}
@@ -66,7 +67,7 @@ class Statics:
         self.revision, self.offered = 0, -1
         # The revision of which the theories were compared, what came of it, the other one's way, the critical load factor.
         self._compared: tuple[int, SecondOrder | None, Settlement | None, float] = -1, None, None, np.inf
-        self._limit: tuple[int, LimitLoad] | None = None  # with the revision
+        self._limit = Latest["LimitLoad"]()  # by revision
         self._rest = -1, 0.0  # the revision that was asked for last, and since when (s)
         self.part = math.inf  # s of a frame, for solving
 
@@ -250,12 +251,11 @@ class Statics:
             from pinjoint.systems.statics.second_order import SecondOrder
 
             theory = EXACT if self.first_order else FIRST_ORDER
-            if self._comparing is None or self._comparing[0] != self.revision:
-                self._comparing = self.revision, Behind(partial(self._settled, theory))
+            behind = self._comparing.get(self.revision, lambda: Behind(partial(self._settled, theory)))
             with self._model.own_state():
-                if not self._comparing[1].part(math.inf if elapsed is None else self.part):
+                if not behind.part(math.inf if elapsed is None else self.part):
                     return ""
-            other = self._comparing[1].result()
+            other = behind.result()
             both = (settlement, other) if self.first_order else (other, settlement)
             rests = other.final.balanced
             found = SecondOrder.of(self._model, *(one.final for one in both)) if rests else None
@@ -276,10 +276,8 @@ class Statics:
         model = self._model
         if not 0 < model.rods.count <= _MOST_COMPARED or not can_collapse(model):
             return None
-        if self._limit is None or self._limit[0] != self.revision:
-            with model.own_state():
-                self._limit = self.revision, LimitLoad.of(model)
-        return self._limit[1]
+        with model.own_state():
+            return self._limit.get(self.revision, lambda: LimitLoad.of(model))
 
     def collapse(self, elapsed: float | None = None) -> tuple[str, bool]:
         """What limit analysis says beside load steps that went beyond the elastic range, "" if they did not; and whether

@@ -30,7 +30,8 @@ TOOLBAR: dict[str, tuple[str, ...]] = {
     marked("Run"): ("toggle run", "restart", "step back", "step", "slower", "faster", "settle"),
     marked("Statics"): ("toggle statics", "next theory"),
     marked("Steps"): (
-        *("part before", "next part", "to the equations", "release x", "release y", "release another"),
+        *("part before", "next part", "to the equations"),
+        *("release x", "release y", "release moment", "release another"),
     ),
     marked("Method"): ("toggle diagrams of sets", "back"),
     marked("Edit"): ("undo", "redo", "copy", "paste", "duplicate", "delete"),
@@ -58,6 +59,7 @@ WORDS = {  # beside icons, where there is room: of actions, or of the icons that
     "to the equations": marked("equations"),
     "release x": marked("release x"),
     "release y": marked("release y"),
+    "release moment": marked("release M"),
     "release another": marked("another"),
     "toggle diagrams of sets": marked("diagrams"),
     "back": marked("close"),

@@ -15,6 +15,7 @@ from pinjoint.components.cases import idle_settlement
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Column, Role
 from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.latest import Latest
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import immovable, incomputable
 from pinjoint.components.rod import extensible_elsewhere, idle_moment
@@ -99,7 +100,7 @@ class Simulation:
         self._announces = True
         # that a frame left, at this revision
         self._parting: tuple[int, Generator[None, None, str]] | None = None
-        self._present: tuple[int, Snapshot] | None = None  # the state at this revision
+        self._present = Latest[Snapshot]()  # the state, by revision
         self.armed = False
         self.armed_revision = -1
         model.before_change = self.before_change
@@ -267,10 +268,7 @@ class Simulation:
 
     def present(self) -> Snapshot:
         """All of the state now; the same as before if nothing has changed."""
-        revision = self.model.newest(Role.STATE)
-        if self._present is None or self._present[0] != revision:
-            self._present = revision, Snapshot.take(self.model)
-        return self._present[1]
+        return self._present.get(self.model.newest(Role.STATE), lambda: Snapshot.take(self.model))
 
     def checkpoint(self, *tables: str) -> Checkpoint:
         """A checkpoint of the present, with the state of these tables (none given: of all tables)."""

@@ -27,7 +27,7 @@ from pinjoint.components.wording import brief
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import needed_parts
-from pinjoint.systems.statics.equations import SOFT, Structure, normalised, upright
+from pinjoint.systems.statics.equations import SOFT, Structure, upright
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, divide_named, rod_names
 from pinjoint.systems.statics.external import External
@@ -110,9 +110,9 @@ class Buckling:
             order = np.argsort(nearer)[: int(np.isfinite(nearer).sum())]
             stiffens, factors = len(order) < len(nearer), about.load_factor + nearer[order]
             vectors = vectors[:, order]
-        fields = structure.fields(vectors)
-        modes = np.array([upright(normalised(field)) for field in fields]).reshape(fields.shape)
-        works = [_work(structure, rods, field, -live) for field in fields]
+        motions = structure.motions(vectors)
+        modes = np.array([upright(motion) for motion in motions]).reshape(motions.shape)
+        works = [_work(structure, rods, field, -live) for field in structure.fields(vectors)]
         leading = np.array([int(work.argmax()) for work in works], dtype=np.intp)
         member = members(model)
         taking = np.zeros(len(live), dtype=bool)

@@ -13,7 +13,6 @@ Ends of members that are hinged need no unknown of their own: what holds them is
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from scipy.linalg import qr
@@ -25,7 +24,13 @@ from pinjoint.components.wording import brief
 from pinjoint.systems.statics.equations import Structure
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.force_method import real_structure
-from pinjoint.systems.statics.superposition import ROUNDING, SetState, Superposition, settled_supports
+from pinjoint.systems.statics.superposition import (
+    ROUNDING,
+    SetState,
+    Superposition,
+    settled_supports,
+    without_rounding,
+)
 from pinjoint.systems.statics.theory import FirstOrder
 from pinjoint.systems.statics.unknowns import MethodError, Unknown
 
@@ -56,16 +61,11 @@ class Solution(Superposition):
         """Δ."""
         return self.displacement
 
-    @cached_property
-    def _rounding(self) -> Array:
-        """What of an entry of K is nothing, (n, n)."""
-        size = np.sqrt(np.diag(self.stiffness))
-        return ROUNDING * np.outer(size, size)
-
     def shares(self, i: int, j: int) -> Array:
         """What every rod adds to an entry of K (rods,), 0 but for rounding where it adds nothing."""
         added = ((self.ways[:, :, i, None] * self.members).sum(axis=1) * self.ways[:, :, j]).sum(axis=1)
-        return np.where(np.abs(added) > self._rounding[i, j], added, 0.0)
+        nothing = ROUNDING * np.sqrt(self.stiffness[i, i] * self.stiffness[j, j])
+        return np.where(np.abs(added) > nothing, added, 0.0)
 
 
 def solve(model: Model) -> Solution:
@@ -101,8 +101,7 @@ def solve(model: Model) -> Solution:
     if firm.any():
         stiffness = np.einsum("rai,rab,rbj->ij", ways, members, ways)
         stiffness += np.einsum("ipa,pa,jpa->ij", fields, whole.springs, fields)
-        size = np.sqrt(np.diag(stiffness))
-        stiffness = np.where(np.abs(stiffness) > ROUNDING * np.outer(size, size), stiffness, 0.0)
+        stiffness = without_rounding(stiffness)
         displacement = np.linalg.solve(stiffness, load).astype(np.float64)
     else:
         stiffness = np.asarray(whole.initial_tangent)

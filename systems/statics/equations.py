@@ -238,6 +238,11 @@ class Structure:
         found: Array = self.of_supports(self.internal(response) - load) - response.spring_force
         return found + 0.0
 
+    def unbalanced(self, response: Response, load: Array) -> float:
+        """The largest force (kN) that nothing holds under a load (n, …)."""
+        left = self.internal(response) - load
+        return self.largest(left - self.of_supports(left))
+
     def grown(self, share: float) -> Structure:
         """The same structure with a share of its lack of fit and warmth."""
         bending = self.bending
@@ -300,7 +305,7 @@ class Structure:
         if self.bending is not None:
             bent = self.bending.rigid.any(axis=1)
             measure[:, 2] = self.rest_length[bent].mean() if bent.any() else 1.0
-        return self._of_unknowns(measure)
+        return self.along_unknowns(measure)
 
     def largest(self, field: Array) -> float:
         """The largest force (kN) in a field of forces, moments counting by their levers."""
@@ -315,24 +320,20 @@ class Structure:
 
     def greatest(self, vector: Array) -> float:
         """The same of the unknowns' forces."""
-        return largest(vector) if self.bending is None else largest(vector * self._of_unknowns(self.lever))
+        return largest(vector) if self.bending is None else largest(vector * self.along_unknowns(self.lever))
 
     def gather(self, field: Array) -> Array:
         """The unknowns in a field."""
-        return self._of_unknowns(self.along_supports(field))
+        return self.along_unknowns(self.along_supports(field))
 
-    def _of_unknowns(self, values: Array) -> Array:
-        """Values along the axes of supports (n, …), those of unknowns."""
+    def along_unknowns(self, values: Array) -> Array:
+        """Of values along the axes of supports (n, …), or alike along all axes, those of unknowns."""
         return values.ravel()[self.index]
 
     @property
     def unknown_springs(self) -> Array:
         """The stiffness of springs along each unknown, (N,)."""
-        return self._of_unknowns(self.springs)
-
-    def masses_of_unknowns(self, values: Array) -> Array:
-        """Masses, alike along all axes (n, …), of each unknown."""
-        return self._of_unknowns(values)
+        return self.along_unknowns(self.springs)
 
     def spread(self, vector: Array) -> Array:
         """A vector of unknowns as a field, zero elsewhere."""
@@ -345,6 +346,11 @@ class Structure:
         return np.array([self.spread(vector) for vector in vectors.T]).reshape(
             vectors.shape[1], *self.unknown.shape
         )
+
+    def motions(self, vectors: Array) -> Array:
+        """The same, the largest motion of each 1."""
+        fields = self.fields(vectors)
+        return np.array([normalised(field) for field in fields]).reshape(fields.shape)
 
     def relative(self, field: Array) -> Array:
         """Second end minus first end of every rod, (rods, 2)."""
@@ -437,7 +443,7 @@ class Structure:
         if self.bending is not None:
             of_ends = self.bending.end_stiffness[:, ::2].ravel()
             weight = np.column_stack([weight, np.bincount(self.ends.ravel(), of_ends, len(weight))])
-        return self._of_unknowns(weight + self.springs)
+        return self.along_unknowns(weight + self.springs)
 
     def effort(self, vector: Array, response: Response) -> float:
         """The energy (kN·m) beside which that of a motion is round-off: of rods that resist it with all they have.
@@ -491,8 +497,8 @@ class Structure:
     ) -> Response:
         """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p.
 
-        share: of the distributed forces that acts between the ends. piece: of the laws, where ends yield, as if it went on
-        for ever; None: by their laws.
+        share: of the distributed forces that acts between the ends. piece: of the laws, as if it went on for ever;
+        None: by their laws.
         """
         rest()
         return self._response(displacement, plastic_strain, share, piece)
@@ -541,7 +547,8 @@ class Structure:
         """Axial forces as if no rod yielded, which are slack, and axial forces."""
         elastic = self.stiffness * (strain - permanent)
         if piece is not None:
-            slack, firm = piece.slack[:, 0], np.where(piece.flowing[:, 0], piece.edge[:, 0], elastic)
+            slack, flowing, edge = (of_axes(part) for part in (piece.slack, piece.flowing, piece.edge))
+            firm = np.where(flowing, edge, elastic)
         else:
             slack = self.sense * (elastic - self._edge) < 0.0
             firm = np.clip(elastic, -self.compression_limit, self.tension_limit)
@@ -633,18 +640,14 @@ class Structure:
         """
         if not flowing.any():
             return flowing
-        flowing, ends = flowing.copy(), self.ends
+        assert self.bending is not None
+        flowing, ends, rigid = flowing.copy(), self.ends, self.bending.rigid
         for joint in np.unique(ends[flowing]).tolist():
-            here = (ends == joint) & self._rigid_ends
+            here = (ends == joint) & rigid
             if self.unknown[joint, 2] and not self.springs[joint, 2] and flowing[here].all():
                 rows = np.argwhere(here)
                 flowing[tuple(rows[turned[here].argmin()])] = False
         return flowing
-
-    @cached_property
-    def _rigid_ends(self) -> Flags:
-        assert self.bending is not None
-        return self.bending.rigid
 
     def _pull_of_springs(self, displacement: Array) -> Array:
         return self.along_axes(self.springs * self.along_supports(displacement))

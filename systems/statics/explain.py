@@ -43,26 +43,19 @@ def slack_named(model: Model, slack: Flags) -> str:
     """Sentences that name the slack cables, and the struts that have buckled; "" if there are none."""
     struts = np.isfinite(model.rods.buckling_load)
     slack = of_axes(slack)[: len(struts)]
-    cables, buckled = np.flatnonzero(slack & ~struts), np.flatnonzero(slack & struts)
     said = []
-    if len(cables):
+    if len(rows := np.flatnonzero(slack & ~struts)):
         said += [
             plural(
                 "{rods} is slack; tighten it if that is not intended.",
                 "{rods} are slack; tighten them if that is not intended.",
-                len(cables),
-                rods=begun(rod_names(model, cables)),
+                len(rows),
+                rods=begun(rod_names(model, rows)),
             )
         ]
-    if len(buckled):
-        said += [
-            plural(
-                "{rods} has buckled.",
-                "{rods} have buckled.",
-                len(buckled),
-                rods=begun(rod_names(model, buckled)),
-            )
-        ]
+    if len(rows := np.flatnonzero(slack & struts)):
+        rods = begun(rod_names(model, rows))
+        said += [plural("{rods} has buckled.", "{rods} have buckled.", len(rows), rods=rods)]
     return joined(said)
 
 

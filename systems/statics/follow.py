@@ -576,13 +576,7 @@ class Path:
         """The response as it were if all rods stayed on the pieces of their laws that a tangent at the start is on."""
         branches = self.branches(start.response)
         edge = np.where(branches.outward > 0.0, branches.high, branches.low)
-        if edge.ndim > 1:
-            of_ends = Piece(piece.flowing, piece.slack, edge)
-            return self.respond(displacement, start.plastic_strain, t, of_ends)
-        response = self.respond(displacement, start.plastic_strain, t)
-        given = self.structure.given_way(response.elastic_force)
-        force = np.where(piece.slack, given, np.where(piece.flowing, edge, response.elastic_force))
-        return replace(response, axial_force=force, flowing=piece.flowing, slack=piece.slack)
+        return self.respond(displacement, start.plastic_strain, t, Piece(piece.flowing, piece.slack, edge))
 
     def _is_on(self, start: Point, piece: Tangent, found: Point) -> bool:
         """True if the rods at a point are on the pieces of their laws that a tangent at the start is on."""

@@ -37,7 +37,13 @@ from pinjoint.systems.statics.equations import Structure, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External
-from pinjoint.systems.statics.superposition import ROUNDING, SetState, Superposition, settled_supports
+from pinjoint.systems.statics.superposition import (
+    ROUNDING,
+    SetState,
+    Superposition,
+    settled_supports,
+    without_rounding,
+)
 from pinjoint.systems.statics.theory import FirstOrder
 from pinjoint.systems.statics.unknowns import MethodError, Unknown
 
@@ -158,8 +164,7 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     gap = work.gap
     flexibility = work.axial.flexibility + work.bending.flexibility + work.supports.flexibility
     force: Array = np.linalg.solve(flexibility, prescribed - gap).astype(np.float64)
-    size = np.sqrt(np.abs(np.diag(flexibility)))
-    flexibility = np.where(np.abs(flexibility) > ROUNDING * np.outer(size, size), flexibility, 0.0)
+    flexibility = without_rounding(flexibility)
     sign = np.array([-1.0 if unknown.of_bar else 1.0 for unknown in unknowns])
     return Solution(
         tuple(unknowns),

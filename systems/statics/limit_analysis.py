@@ -9,7 +9,7 @@ too large, the place is added, until none is (cutting planes) [J. E. Kelley, 196
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -58,7 +58,8 @@ class LimitLoad:
     status: "collapse", "no limit", "mechanism", "does not bear its weight" or, where the numbers differ too much, "limit
     reached". axial_force (rods,) and bending_moment (rods, 2) at collapse, one such state of many where some part does not
     collapse. motion: of the collapse, (n, …), the largest 1; at its rate rods yield by lengthening (rods,), hinges at their
-    ends turn by turning (rods, 2), and those of `between` by the angles there.
+    ends turn by turning (rods, 2), and those of `between` by the angles there. bends_freely: members bend, and none has a
+    plastic moment.
     """
 
     factor: float
@@ -69,11 +70,14 @@ class LimitLoad:
     lengthening: Array = field(default_factory=lambda: np.zeros(0))
     turning: Array = field(default_factory=lambda: np.zeros((0, 2)))
     between: tuple[tuple[Section, float], ...] = ()
+    bends_freely: bool = False
 
     @classmethod
     def of(cls, model: Model) -> LimitLoad:
         """That of a model; its inextensible rods neither yield nor buckle."""
-        return _Program(model).answer()
+        program = _Program(model)
+        free = bool(program.rigid.any() and np.isinf(program.moment[program.rigid.any(axis=1)]).all())
+        return replace(program.answer(), bends_freely=free)
 
     @property
     def message(self) -> str:
@@ -85,7 +89,11 @@ class LimitLoad:
             OVERLOADED: marked("Limit analysis: even without loads it does not bear its weight."),
             LOST: marked("Limit analysis: no answer was found; its numbers differ too much."),
         }
-        return tr(said[self.status], factor=self.factor)
+        free = tr(
+            "No member has a plastic moment, so that bending limits nothing in it; give them some, or switch plastic hinges"
+            " of sections on."
+        )
+        return joined([tr(said[self.status], factor=self.factor), free if self.bends_freely else ""])
 
     def record(self, model: Model) -> dict[str, Any]:
         """It as plain data: factor (None where there is none), status, message, forces and hinges by rod, and the motion."""

@@ -156,10 +156,10 @@ class Divided:
         full = structure.matrix(way.swapaxes(1, 2) @ block @ way)
         point = np.pad(self.point / 1000.0, ((0, len(self.inner[0])), (0, 0)))
         if isinstance(full, np.ndarray):
-            return full + np.diag(structure.masses_of_unknowns(point))
+            return full + np.diag(structure.along_unknowns(point))
         from scipy.sparse import csc_matrix, diags
 
-        return csc_matrix(full + diags(structure.masses_of_unknowns(point)))
+        return csc_matrix(full + diags(structure.along_unknowns(point)))
 
 
 def _bending(model: Model) -> Structure:

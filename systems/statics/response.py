@@ -101,7 +101,7 @@ class Branches:
 
 @dataclass(frozen=True)
 class Piece:
-    """A piece of the laws of all that can yield, (rods, 3): what flows at the force `edge`, and what is slack."""
+    """A piece of the laws of all that can yield, (rods,) or (rods, 3): what flows at the force `edge`, and what is slack."""
 
     flowing: Flags
     slack: Flags

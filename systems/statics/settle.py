@@ -417,12 +417,9 @@ class _Settling:
 
     def _residual(self) -> float:
         """The largest unbalanced force over the largest force so far."""
-        response = self.point.response
-        structure = self.structure
+        structure, response = self.structure, self.point.response
         self.largest = max(self.largest, structure.largest(self.load), structure.largest_force(response))
-        unbalanced = structure.internal(response) - self.load
-        unbalanced = unbalanced - structure.of_supports(unbalanced)
-        return structure.largest(unbalanced) / self.largest if self.largest > 0.0 else 0.0
+        return structure.unbalanced(response, self.load) / self.largest if self.largest > 0.0 else 0.0
 
     def _note_slender(self, factor: float) -> None:
         """Report, once, the rods that bend more than one cubic follows."""

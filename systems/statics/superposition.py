@@ -23,6 +23,12 @@ from pinjoint.systems.statics.unknowns import Unknown
 ROUNDING = 1e-12
 
 
+def without_rounding(matrix: Array) -> Array:
+    """A symmetric matrix (m, m), in which what is nothing beside its diagonal is 0."""
+    size = np.sqrt(np.abs(np.diag(matrix)))
+    return np.where(np.abs(matrix) > ROUNDING * np.outer(size, size), matrix, 0.0)
+
+
 @dataclass(frozen=True, repr=False)
 class SetState:
     """A set by first-order theory: displacement (n, 2) in m, rotation (n,) in rad, axial forces (rods,) in kN.

@@ -191,8 +191,6 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
     supports = structure.of_supports(structure.field(start.displacement, start.rotation))
     theory = FirstOrder(model, structure)
     moved, elastic = theory.equilibrium(load, supports, start.permanent, factor, structure)
-    unbalanced = structure.internal(elastic) - load
-    unbalanced = unbalanced - structure.of_supports(unbalanced)
     forces = max(structure.largest(load), structure.largest_force(elastic))
     return StaticState.of(
         model,
@@ -203,7 +201,7 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
         load_factor=factor,
         acting=load,
         dissipated_plastic=0.0,
-        residual=structure.largest(unbalanced) / forces if forces > 0.0 else 0.0,
+        residual=structure.unbalanced(elastic, load) / forces if forces > 0.0 else 0.0,
         status=STABLE,
         message="",
         events=(),
@@ -250,8 +248,7 @@ def mechanisms(model: Model) -> Array:
         matrix = structure.initial_tangent
         count = regular(matrix, structure.weight, -SOFT).negative
         modes = soft_modes(matrix, structure.weight, most=min(_MOST_MODES, count))
-    fields = structure.fields(_localised(modes))
-    return np.array([normalised(field) for field in fields]).reshape(fields.shape)
+    return structure.motions(_localised(modes))
 
 
 def self_stress(model: Model) -> Array:

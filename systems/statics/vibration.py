@@ -14,7 +14,7 @@ from pinjoint.components.arrays import ROUND_OFF, Array
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.assembly import Matrix
-from pinjoint.systems.statics.equations import Structure, largest, normalised
+from pinjoint.systems.statics.equations import Structure, largest
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.factor import Factor, pseudo_random
 from pinjoint.systems.statics.masses import Divided
@@ -61,7 +61,7 @@ class Vibrations:
         place, response = np.zeros(whole.unknown.shape), whole.unmoved
         if state is not None:
             place, response = _present(whole, state)
-        mass = whole.masses_of_unknowns(masses) / 1000.0
+        mass = whole.along_unknowns(masses) / 1000.0
         values, vectors = _modes(whole, response, state is not None, mass, count)
         lumped = np.sqrt(values[values > 0.0][:1]) / (2.0 * np.pi)
         structure, total = whole, whole.size
@@ -75,9 +75,14 @@ class Vibrations:
             )
             total = max(int((values <= divided.highest).sum()), int((values <= 0.0).sum()) + 1)
             values, vectors = values[:total], vectors[:, :total]
-        fields = structure.fields(vectors)
-        modes = np.array([normalised(field) for field in fields]).reshape(fields.shape)
-        return cls(values, modes, structure, place, total, float(lumped[0]) if len(lumped) else None)
+        return cls(
+            values,
+            structure.motions(vectors),
+            structure,
+            place,
+            total,
+            float(lumped[0]) if len(lumped) else None,
+        )
 
     @property
     def hertz(self) -> Array:

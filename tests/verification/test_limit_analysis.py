@@ -170,6 +170,16 @@ def test_no_limit_and_mechanisms_are_said() -> None:
     assert found_of(document).status == "mechanism"
 
 
+@pytest.mark.parametrize("moment", [None, 50.0])
+def test_that_no_member_has_a_plastic_moment_is_said(moment: float | None) -> None:
+    """A factor by axial forces alone is far too high for what bends."""
+    limits = {"tensile_strength": 100.0, "bending_stiffness": 1000.0, "plastic_moment": moment}
+    loaded = particle("B", 1, 0, force=[10.0, -10.0])
+    found = found_of(model([particle("A", 0, 0, **CLAMPED), loaded], [rod("A", "B", **limits)]))
+    assert found.factor == pytest.approx(10.0 if moment is None else 5.0, rel=1e-9)
+    assert ("No member has a plastic moment" in found.message) == (moment is None)
+
+
 def test_the_command_tells_it_beside_load_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "beam.json"
     path.write_text(json.dumps(beam({"fixed": [True, True]}, distributed_force=[0.0, -Q])), encoding="utf-8")

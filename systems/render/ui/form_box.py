@@ -25,7 +25,7 @@ _STEP = 40.0  # points that widths of boxes are multiples of, so that one grows 
 
 def titled_box(box: Box, width: float, theme: Theme, u: float, *, selected: bool) -> Column:
     """A box in so many pixels, with its title and what has no room in it above, and why it is refused below."""
-    unit = box.unit
+    unit = "" if box.text in box.words else box.unit
     if _has_room_for_unit(box, width, u):
         unit = "" if box.changed or _has_room_for_note(box, width, u) else box.note
         if text_width(f"{box.said_title} {unit}", font_size(TITLE, u)) + 8.0 * u > width:
@@ -49,7 +49,7 @@ def bare_box(box: Box, width: float, theme: Theme, u: float, *, selected: bool, 
 
 def is_short(box: Box, width: float, u: float) -> bool:
     """True if the title of a box stands whole above it in so many pixels, with what is noted of its value."""
-    unit = "" if box.text and box.text not in box.words else box.unit
+    unit = "" if box.text else box.unit
     beside = max(_short(box.note), unit, key=len)
     said = f"{box.said_title} {beside}".rstrip()
     return text_width(said, font_size(TITLE, u)) + 8.0 * u * bool(beside) <= width
