@@ -102,7 +102,7 @@ def along(model: Model, rod: Rod, distance: float, envelope: Any = None) -> Read
 
 
 def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]:
-    rods, names = columns.model.rods, columns.model.rods.column("name")
+    rods = columns.model.rods
     force = columns("rods.axial_force")
     if len(rows) == 1:
         yield _result(tr("axial force"), _number(force[rows[0]], force, "kN"), Rod.axial_force)
@@ -112,12 +112,16 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]:
             (tr("largest compression"), np.argmin, force < 0.0),
         ):
             row = rows[pick(force[rows])]
-            text = f"{_number(force[row], force, 'kN')} ({names[row]})" if seen[row] else tr_in("force", "none")
+            text = (
+                f"{_number(force[row], force, 'kN')} ({rods[int(row)].said})"
+                if seen[row]
+                else tr_in("force", "none")
+            )
             yield _result(title, text, Rod.axial_force)
         moment = np.abs(columns("rods.bending_moment")).max(axis=1)
         if (rods.bending_stiffness[rows] > 0.0).any():
             row = rows[np.argmax(moment[rows])]
-            text = f"{_number(moment[row], moment, 'kN·m')} ({names[row]})"
+            text = f"{_number(moment[row], moment, 'kN·m')} ({rods[int(row)].said})"
             yield _result(tr("largest end moment"), text, Rod.bending_moment)
     yield from _utilisation(columns, rows)
     if len(rows) == 1:
@@ -238,10 +242,10 @@ def _largest_displacement(
     moved = MOVED[1] * np.hypot(*model.particles.displacement.T)
     joints = np.concatenate([particles, model.rods.between[rods].ravel()]).astype(np.intp)
     most = joints[np.argmax(moved[joints])]
-    largest, whose = moved[most], model.particles.names[most]
+    largest, whose = moved[most], model.particles[int(most)].said
     inside = MOVED[1] * farthest(model, rods)[0]
     if len(rods) and inside.max() > largest * (1.0 + written.ROUNDING):
-        largest, whose = inside.max(), model.rods.names[rods[np.argmax(inside)]]
+        largest, whose = inside.max(), model.rods[int(rods[np.argmax(inside)])].said
     text = f"{_number(largest, np.append(moved, inside), MOVED[0])} ({whose})"
     yield _result(tr("largest displacement"), text, Particle.displacement)
 

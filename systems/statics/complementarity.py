@@ -11,6 +11,7 @@ from pinjoint.components.arrays import Array, Flags
 
 _ENUMERATED = 10  # rods up to which all sets are tried if pivoting does not end
 _PIVOTS = 200
+_OWN = 1e-4  # of what yielding lowers its own force by: if others lower all but this, they do as well
 
 
 def yielding_set(matrix: Array, growth: Array, guess: Flags) -> Flags | None:
@@ -39,6 +40,19 @@ def yielding_sets(matrix: Array, growth: Array, guess: Flags) -> Iterator[Flags]
             chosen = _pivoted(matrix, growth, start)
             if chosen is not None:
                 yield chosen
+
+
+def independent(matrix: Array, chosen: Flags, first: Flags) -> Flags:
+    """Of a set as many as lower the forces in ways of their own, those of `first` before others: the rest need not yield."""
+    kept: list[int] = []
+    for row in sorted(np.flatnonzero(chosen).tolist(), key=lambda row: not first[row]):
+        across = matrix[kept, row]
+        own = matrix[row, row] - across @ np.linalg.solve(matrix[np.ix_(kept, kept)], across)
+        if own > _OWN * matrix[row, row]:
+            kept.append(row)
+    found = np.zeros_like(chosen)
+    found[kept] = True
+    return found
 
 
 def _pivoted(matrix: Array, growth: Array, guess: Flags) -> Flags | None:

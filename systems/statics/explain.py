@@ -10,7 +10,9 @@ from pinjoint.components import language, written
 from pinjoint.components.arrays import Array, Flags, Rows
 from pinjoint.components.language import begun, joined, plural, tr
 from pinjoint.components.model import Model
-from pinjoint.components.wording import cut
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.wording import as_said, cut
 from pinjoint.systems.statics.equations import TURNS_ONLY, largest
 from pinjoint.systems.statics.response import of_axes
 
@@ -22,7 +24,7 @@ ONE_WAY = 1e-3  # ratio of a particle's motions across and along, below which it
 
 def listed(names: Sequence[str]) -> str:
     """Up to NAMED names, as in "B, C and D", and the number of the others."""
-    return _few([cut(name) for name in names])
+    return _few([as_said(Particle.noun, as_said(Rod.noun, cut(name))) for name in names])
 
 
 def _few(parts: Sequence[str]) -> str:
@@ -73,7 +75,10 @@ def divide_named(model: Model, rows: Rows, parts: Rows) -> str:
     """A sentence about rods that bend within themselves, and into how many to divide each; parts: of all rods."""
     names = model.rods.column("name")
     into = _few(
-        [tr("{rod} into {parts}", rod=cut(str(names[row])), parts=int(parts[row])) for row in rows.tolist()]
+        [
+            tr("{rod} into {parts}", rod=listed([str(names[row])]), parts=int(parts[row]))
+            for row in rows.tolist()
+        ]
     )
     return plural(
         "{rods} bends more between its ends than a single rod can represent. Divide {parts}, with"
@@ -153,7 +158,7 @@ def moved(model: Model, before: Array, after: Array) -> str:
     row = int(np.hypot(change[:, 0], change[:, 1]).argmax())
     return tr(
         "{particle} moves by {change}, to the displacement {displacement}",
-        particle=names[row],
+        particle=listed([str(names[row])]),
         change=_pair(change[row]),
         displacement=_pair(after[row]),
     )

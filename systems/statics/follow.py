@@ -15,7 +15,7 @@ import numpy as np
 
 from pinjoint.components.arrays import ROUND_OFF, Array, Flags
 from pinjoint.systems.statics.behind import rest
-from pinjoint.systems.statics.complementarity import yielding_set, yielding_sets
+from pinjoint.systems.statics.complementarity import independent, yielding_set, yielding_sets
 from pinjoint.systems.statics.equations import AT_LIMIT, Structure, largest
 from pinjoint.systems.statics.factor import NO_STIFFNESS, Factor, lowest, regular
 from pinjoint.systems.statics.response import Branches, Piece, Response, of_axes
@@ -260,13 +260,13 @@ class Path:
         limited, matrix, excess = self._limits(response, branches, elastic)
         chosen = yielding_set(matrix, excess, guess[limited])
         if chosen is not None:
-            giving = self._giving(limited, matrix, excess, chosen)
-            found = self._direction(response, branches, giving, onward)
-            if giving.ndim > 1 and not self._agrees(
-                response, branches, found
-            ):  # all ends at some joint have to
-                limited[limited] = chosen
-                found = self._direction(response, branches, limited, onward)
+            found = self._direction(response, branches, self._giving(limited, matrix, excess, chosen), onward)
+            if limited.ndim > 1:  # or enough of them, or all at some joint have to
+                for these in (independent(matrix, chosen, guess[limited]), chosen):
+                    if not self._agrees(response, branches, found):
+                        giving = np.zeros_like(limited)
+                        giving[limited] = these
+                        found = self._direction(response, branches, giving, onward)
             return found
         grows = self._untied(growth > 0.0, np.where(guess, np.inf, growth))
         return replace(self._direction(response, branches, grows, onward), consistent=False)

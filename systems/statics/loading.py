@@ -13,7 +13,14 @@ from pinjoint.components.language import begun, joined, marked, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.equations import SOFT, Structure, largest, normalised
 from pinjoint.systems.statics.events import Event, NoEquilibrium
-from pinjoint.systems.statics.explain import describe_motion, hinges_named, moved, rod_names, slack_named
+from pinjoint.systems.statics.explain import (
+    describe_motion,
+    hinges_named,
+    listed,
+    moved,
+    rod_names,
+    slack_named,
+)
 from pinjoint.systems.statics.factor import NO_STIFFNESS, is_stable, regular, softest, unresisted
 from pinjoint.systems.statics.follow import HALF, NARROWINGS, Path, Point, Tangent
 from pinjoint.systems.statics.relax import LARGEST_PLASTIC_ROTATION, RUNAWAY, STEPS, relax, torn
@@ -447,7 +454,7 @@ def hinges_formed(
         rod, particle = model.rods.names[row], model.particles.names[ends[row, end]]
         message = tr(
             "A plastic hinge forms at {particle}, in {rod}, {at}.",
-            particle=particle,
+            particle=listed([particle]),
             rod=rod_names(model, np.array([row])),
             at=_at(factor, total),
         )

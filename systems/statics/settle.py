@@ -35,6 +35,7 @@ from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import (
     describe_motion,
     divide_named,
+    listed,
     nothing_stops,
     rod_names,
     slack_named,
@@ -99,7 +100,9 @@ class Settlement:
         more = len(others) - MOST_TOLD
         said = [self.message or tr("Result: {status}.", status=tr(self.status))]
         if hinges:
-            places = [joined([e.place["particle"], "×", written.given(e.load_factor, 4)]) for e in hinges]
+            places = [
+                joined([listed([e.place["particle"]]), "×", written.given(e.load_factor, 4)]) for e in hinges
+            ]
             places[MOST_HINGES:] = ["…"] * (len(hinges) > MOST_HINGES)
             said.insert(0, tr("Plastic hinges by load factor: {places}.", places=joined(places, ", ")))
         said += others[:MOST_TOLD]

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
+from pinjoint.components.language import english, spoken
 from pinjoint.documents import models
 from pinjoint.results import Results
 from pinjoint.systems.statics.equations import Structure
@@ -330,3 +331,42 @@ def test_a_slack_cable_that_lets_a_frame_with_hinges_fall_is_told() -> None:
     rods = [{"name": name, "between": list(name), **facts} for name, facts in named]
     found = models.load(model(particles, rods))
     assert settle(found, theory=found.settings.theory).status == "mechanism"
+
+
+def test_of_ends_that_reach_one_plastic_moment_together_as_many_turn_as_have_to() -> None:
+    """A column without shear bears one moment M_p all along: C turns, D and E need not before B does, at 3 V λ = 2 M_p."""
+    particles = [
+        held("A", 0.0, fixed_rotation=True),
+        *(free("B", 0.0, 4.0, force=[60.0, 0.0]), free("C", 3.0, 4.0, force=[0.0, -60.0]), free("D", 6.0, 4.0)),
+        free("E", 6.0, 0.0, fixed_rotation=True),
+        free("P", 2.9, 4.5),
+    ]
+    beam: Document = {"bending_stiffness": 8000.0}
+    yields = beam | {"plastic_moment": 70.0}
+    named = {"AB": beam, "BC": yields, "CD": beam | {"tension_only": True}, "DE": yields, "PD": {}, "PC": {}}
+    rods = [{"name": name, "between": list(name), **facts} for name, facts in named.items()]
+    found = settle(models.load(model(particles, rods)), 1.4, "first-order")
+    assert found.status == "collapse"
+    assert events(found, "collapse")[0].load_factor == pytest.approx(7 / 9, rel=1e-9)
+    first = events(found, "hinge")[0]
+    assert (first.place["particle"], first.load_factor) == ("C", pytest.approx(2 / 3, rel=1e-9))
+
+
+def test_joints_that_nobody_named_are_told_in_the_language_that_is_spoken() -> None:
+    joints = [
+        free("particle 1", 0.0, fixed=[True, True], fixed_rotation=True),
+        free("particle 2", 2.0, force=[0.0, -10.0]),
+    ]
+    rods = [
+        {
+            "name": "rod 1",
+            "between": ["particle 1", "particle 2"],
+            "bending_stiffness": 1e3,
+            "plastic_moment": 5.0,
+        }
+    ]
+    with spoken("pt"):
+        told = settle(models.load(model(joints, rods)), 1.0, "first-order").account
+    assert "partícula 1 × 0,25" in told
+    assert "particle" not in told
+    assert "particle 1 × 0.25" in english(told)
