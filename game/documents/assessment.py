@@ -78,8 +78,12 @@ class Assessment:
 
         begun = self._begun
         revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
-        start = Start.stored(partial(begun.column, self._model)) if begun else None
-        return self._theories.get(revision, lambda: Theories.of(self._model, start))
+
+        def find() -> Theories:
+            start = Start.stored(partial(begun.column, self._model)) if begun else None
+            return Theories.of(self._model, start)
+
+        return self._theories.get(revision, find)
 
     @property
     def indeterminacy(self) -> Indeterminacy:

@@ -276,8 +276,12 @@ class Statics:
         model = self._model
         if not 0 < model.rods.count <= _MOST_COMPARED or not can_collapse(model):
             return None
-        with model.own_state():
-            return self._limit.get(self.revision, lambda: LimitLoad.of(model))
+
+        def find() -> LimitLoad:
+            with model.own_state():
+                return LimitLoad.of(model)
+
+        return self._limit.get(self.revision, find)
 
     def collapse(self, elapsed: float | None = None) -> tuple[str, bool]:
         """What limit analysis says beside load steps that went beyond the elastic range, "" if they did not; and whether

@@ -452,11 +452,13 @@ def test_modes_are_of_the_unloaded_structure_in_first_order_and_about_the_equili
     assert titles == [f"Mode 1 of 3: {free:.4g} Hz", f"Mode 1 of 3 under load: {loaded:.4g} Hz"]
 
 
-def test_frames_change_nothing_while_nothing_happens() -> None:
-    session = in_statics("portal")
+@pytest.mark.parametrize("name", ["portal", "portal_collapse"])
+def test_frames_change_nothing_while_nothing_happens(name: str) -> None:
+    session = in_statics(name)
     session.frame(0.0)
-    before = session.model.revision
+    limit, before = session.document.statics.limit_load, session.model.revision
     session.frame(0.1)
+    assert session.document.statics.limit_load is limit
     assert session.model.revision == before
 
 
