@@ -160,7 +160,7 @@ def show(context: Context, elapsed: float) -> None:
         state=_state_word(context, brief=bool(drawing)),
         hint=drawing or scene.hint(context),
         problem=_problem(context),
-        notice=said or joined([lately, *lasting]),
+        notice=said or joined([*lasting, lately] if context.notice else [lately, *lasting]),
         offer=offer if not said else None,
         share=min(awaited.seconds / awaited.expected, 0.99) if awaited is not None else None,
     )

@@ -41,7 +41,7 @@ from pinjoint.systems.statics.explain import (
     slack_named,
 )
 from pinjoint.systems.statics.external import External, loose_bodies
-from pinjoint.systems.statics.factor import SURELY_HELD, resists, soft_modes, softest
+from pinjoint.systems.statics.factor import SURELY_HELD, regular, soft_modes, softest
 from pinjoint.systems.statics.follow import Path, Point
 from pinjoint.systems.statics.loading import Loading, first_order_mechanism
 from pinjoint.systems.statics.relax import BALANCED
@@ -392,7 +392,7 @@ class _Settling:
         structure, response = self.structure, self.point.response
         if structure.first_order and not response.soft.any():
             return self._theory.held
-        return resists(structure.tangent(response, response.soft), structure.weight, -SURELY_HELD)
+        return regular(structure.tangent(response, response.soft), structure.weight, -SURELY_HELD).definite
 
     def _check_balance(self, factor: float) -> None:
         """Report forces that rounding leaves unbalanced. Raises NoEquilibrium if they are many."""

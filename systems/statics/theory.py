@@ -16,7 +16,7 @@ from pinjoint.systems.statics.equations import SOFT, Structure, largest, normali
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External, loose_bodies
-from pinjoint.systems.statics.factor import SURELY_HELD, pseudo_random, regular, resists, soft_modes, unresisted
+from pinjoint.systems.statics.factor import SURELY_HELD, pseudo_random, regular, soft_modes, unresisted
 from pinjoint.systems.statics.response import Response, of_axes
 from pinjoint.systems.statics.state import STABLE, Start, StaticState
 
@@ -52,7 +52,7 @@ class FirstOrder:
     @cached_property
     def held(self) -> bool:
         """True if every motion is resisted, and by so much that no digits are lost."""
-        return resists(self._matrix, self._measure.weight, -SURELY_HELD)
+        return regular(self._matrix, self._measure.weight, -SURELY_HELD).definite
 
     def solve(self, right: Array) -> Array:
         """The unknowns under forces along them, (N,) or (N, k), not refined."""

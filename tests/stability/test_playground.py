@@ -51,6 +51,8 @@ def test_it_runs_at_once_in_real_time_and_says_what_to_do(name: str) -> None:
     assert session.notice == session.model.description.partition(". ")[0] + "."
     assert session.notice.startswith(("Drag", "Flick", "Pull"))
     assert natural_pace(session.model) == 1.0
+    run_frames(session, 6)
+    assert session.view.status.notice.startswith(session.notice)  # before what happens meanwhile
 
 
 @pytest.mark.parametrize("name", PLAYED)

@@ -250,10 +250,13 @@ class _Placing:
         return [label for number, label in enumerate(labels) if number not in led]
 
     def referred(self, labels: Sequence[Label], kept: int, symbols: Truths) -> list[Numbered]:
-        """Numbers in place of values, on what these belong to, in need over `symbols`; the first stay where they were."""
+        """Numbers in place of values, one of all that read alike, on what these belong to, in need over `symbols`; the first
+        stay where they were."""
         if not labels:
             return []
-        occupancy, unit, digits = self.occupancy, self.unit, "0" * len(str(len(labels)))
+        numbers = dict[tuple[str, Colour], int]()
+        digits = "0" * len(str(len({(label.short, label.colour) for label in labels})))
+        occupancy, unit = self.occupancy, self.unit
         half = np.array(half_size(digits, labels[0].size, "semibold", unit)) - [2.5 * unit, 0.5 * unit]
         half[0] = max(half)
         own, kin = _codes(labels, occupancy)
@@ -278,8 +281,9 @@ class _Placing:
         occupancy.taken |= symbols
         numbered: list[Numbered] = []
         for label, place in sorted(zip(labels, found.tolist(), strict=True), key=lambda pair: pair[1] < 0):
-            count, marks = len(numbered) + 1 if place >= 0 else 0, list[Mark]()
+            count, marks = 0, list[Mark]()
             if place >= 0:
+                count = numbers.setdefault((label.short, label.colour), len(numbers) + 1)
                 (x, y), (wide, tall) = middle[place].tolist(), half.tolist()
                 box = x - wide, y - tall, 2.0 * wide, 2.0 * tall
                 marks.append(Panel(*box, tall, label.backing or label.colour, label.colour, label.of))

@@ -127,7 +127,7 @@ def draw_diagrams(sheet: Sheet, taken: float = 0.0) -> None:
     quantity = sheet.view.quantity if sheet.is_frame else AXIAL
     force = np.nan_to_num(sheet.model.rods.axial_force)
     length = sheet.rod_length if shown.all() else typical_length(start, end)
-    if length < _SHORTEST * sheet.unit and not (sheet.is_frame and len(rows) <= _MANY):
+    if length < _SHORTEST * sheet.unit and len(rows) > _MANY:
         if quantity == AXIAL:
             sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST], rows[force[rows] < -SMALLEST]
         sheet.advise(tr("zoom in to see force diagrams"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
 from itertools import product
@@ -441,10 +441,8 @@ def draw_references(sheet: Sheet, values: Sequence[Numbered], former: int) -> li
     if not values:
         return []
     lines, occupancy, u = [], sheet.occupancy, sheet.unit
-    for number, label, _ in values:
-        table, row = label.of or ("rods", 0)
-        name = Text(str(number or sheet.model.tables[table].handles[row].said), 9.0, label.colour, grow=1.0)
-        lines.append(Row((name, Text(label.short, 9.0, label.colour, "semibold")), 6.0))
+    for name, short, colour in _told(sheet, values):
+        lines.append(Row((Text(name, 9.0, colour, grow=1.0), Text(short, 9.0, colour, "semibold")), 6.0))
     low, high = sheet.viewport.corners
     held = np.array([divmod(former, _WIDEST)], dtype=np.float64)
     for covered, rows in product((0, STRONG), _TALL):
@@ -470,6 +468,22 @@ def draw_references(sheet: Sheet, values: Sequence[Numbered], former: int) -> li
         if label.is_given() or len(results) == len(values):
             sheet.placed.pop(label.key or ("", 0), None)
     return draw_references(sheet, results, former) if len(results) < len(values) else []
+
+
+def _told(sheet: Sheet, values: Sequence[Numbered]) -> Iterator[tuple[str, str, Colour]]:
+    """What tells of values that read alike: their number, or the names of two, or of neighbours; the value; its colour."""
+    alike = dict[tuple[int, str, Colour, str], list[int]]()
+    for number, label, _ in values:
+        table, row = label.of or ("rods", 0)
+        alike.setdefault((number, label.short, label.colour, "" if number else table), []).append(row)
+    for (number, short, colour, table), rows in alike.items():
+        every, names = np.unique(rows), [str(number)] * bool(number)
+        for run in [] if number else np.split(every, np.flatnonzero(np.diff(every) > 1) + 1):
+            said = [
+                sheet.model.tables[table].handles[row].said for row in (run[[0, -1]] if len(run) > 2 else run)
+            ]
+            names += [" … ".join(said)] if len(run) > 2 else said
+        yield from ((", ".join(names[at : at + 2]), short, colour) for at in range(0, len(names), 2))
 
 
 def _ruler(theme: Theme, at: Rectangle, u: float) -> list[Mark]:

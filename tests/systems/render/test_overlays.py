@@ -158,3 +158,23 @@ def test_the_title_of_a_mode_stands_beside_a_legend_of_several_rows_off_the_stru
     (title,) = [text for text in texts if text.text.startswith("Mode 1 of 5")]
     (lowest,) = [text for text in texts if text.text == "undeformed"]
     assert heading.y < title.y < lowest.y + 20.0
+
+
+def test_values_that_read_alike_share_a_number_or_a_line() -> None:
+    session = Session.open("rope_bridge")
+    session.press("q")
+    session.view.all_diagrams = True
+    session.resize(1280, 800)
+    session.update_view()
+    texts = compose(*session.stages[0], LIGHT).texts
+    assert texts.count("1") > 10  # loads of the planks, all the same
+    assert "2" not in texts
+    assert texts[texts.index("rope 1, rope 20") + 1] == "0.8861"
+    session = Session.open("falling_columns")
+    session.press("q")
+    session.view.all_diagrams = True
+    session.resize(640, 480)
+    session.press("m")
+    session.update_view()
+    texts = compose(*session.stages[0], LIGHT).texts
+    assert texts[texts.index("column 1 … column 8") + 1] == "−0.09810"
