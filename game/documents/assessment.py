@@ -78,12 +78,10 @@ class Assessment:
 
         begun = self._begun
         revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
-
-        def find() -> Theories:
-            start = Start.stored(partial(begun.column, self._model)) if begun else None
-            return Theories.of(self._model, start)
-
-        return self._theories.get(revision, find)
+        column = partial(begun.column, self._model) if begun else None
+        return self._theories.get(
+            revision, lambda: Theories.of(self._model, Start.stored(column) if column else None)
+        )
 
     @property
     def indeterminacy(self) -> Indeterminacy:

@@ -40,9 +40,8 @@ from pinjoint.systems.statics.theory import FirstOrder
 _REFINEMENTS = 10  # of solutions, at most
 _KNOWN = ROUND_OFF**0.5  # of a solution: after a refinement by less, what is left is round-off
 _STATIONS = np.linspace(0.0, 1.0, 21)  # along each rod, besides those where something jumps or is largest
-_POSITIONS = (
-    40  # along each rod of a path, beside its start: forces largest between them are told up to 0.1 % less
-)
+# Along each rod of a path, beside its start: forces largest between them are told up to 0.1 % less.
+_POSITIONS = 40
 _BESIDE = 1e-9  # of the length of a rod, from its ends: there shear forces beside supports are largest
 _ROUNDING = 1e-12  # of the largest value: by less, no other combination governs
 

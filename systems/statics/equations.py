@@ -38,9 +38,8 @@ TURNS_ONLY = 1e-9  # m/rad: a motion that shifts particles by less is one of rot
 MOST_ITERATIONS = 60  # for the axial force of a rod with plastic hinges
 UNBALANCED = 1e-13  # of the largest force, by the length of a rod: a moment that is round-off
 AT_LIMIT = 1e-10  # share of its strength within which a rod counts as yielding
-SOFT = (
-    1e-12  # of the rods' stiffness at the same particle: a motion that is resisted less counts as not resisted
-)
+# Of the rods' stiffness at the same particle: a motion that is resisted less counts as not resisted.
+SOFT = 1e-12
 
 
 def largest(values: Array) -> float:

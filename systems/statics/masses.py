@@ -22,14 +22,8 @@ from pinjoint.systems.statics.response import Response
 from pinjoint.systems.statics.state import Start, StaticState
 
 PARTS = 4  # of a member, at least
-_OF_PARTS = (
-    "stiffness",
-    "tension_limit",
-    "compression_limit",
-    "sense",
-    "buckling_load",
-    "flat",
-)  # as of their rods
+# As of their rods.
+_OF_PARTS = ("stiffness", "tension_limit", "compression_limit", "sense", "buckling_load", "flat")
 CLOSE = 0.75 * np.pi  # of a wave, in radians along a part, up to which frequencies are within some 2 %
 
 

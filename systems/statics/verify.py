@@ -164,13 +164,8 @@ class Row:
         """Quantity and element, such as "displacement y of particle B"."""
         quantity, element = tr(self.quantity.replace("_", " ")), called(self.element, self.name)
         if self.component in ENDS:
-            at_start = self.component == ENDS[0]
-            message = (
-                marked("{quantity} at the start of {rod}")
-                if at_start
-                else marked("{quantity} at the end of {rod}")
-            )
-            return tr(message, quantity=quantity, rod=element)
+            message = marked("{quantity} at the start of {rod}"), marked("{quantity} at the end of {rod}")
+            return tr(message[ENDS.index(self.component)], quantity=quantity, rod=element)
         return tr("{quantity} of {element}", quantity=joined([quantity, self.component]), element=element)
 
 
