@@ -19,7 +19,7 @@ MOST = {
     "public names": 2_236,
     "numbers": 1_486,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 61_212,
+    "lines of tests": 61_221,
 }
 
 
