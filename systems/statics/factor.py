@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
 from copy import copy
@@ -24,6 +25,7 @@ if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix
 
 HOLDS_LAPACK = "scipy.linalg._flapack"
+_THREADS = "OPENBLAS_NUM_THREADS"
 NO_STIFFNESS = 1e-13  # of the rods' stiffness at the same particle: round-off
 SURELY_HELD = 8e-9  # of the same: what is resisted by more loses no digits, by any measure of a motion
 SOFT_MODES = 8  # that are looked for at most
@@ -36,12 +38,24 @@ def lapack() -> Any:
     """The module with dsytrf and dsytrs; scipy.linalg.lapack, which has the same, where scipy keeps it elsewhere.
 
     Importing that takes 0.12 s, longer than most structures take to settle; the module of scipy that holds LAPACK, 3 ms.
+    It keeps to one thread unless a person chose: while other programs take the cores, threads that wait for one another
+    take 280 ms where one takes 0.1.
     """
     import scipy
 
     if HOLDS_LAPACK in sys.modules:
         return sys.modules[HOLDS_LAPACK]
-    spec = PathFinder.find_spec(HOLDS_LAPACK, [str(Path(scipy.__file__).parent / "linalg")])
+    chosen = os.environ.get(_THREADS)
+    os.environ[_THREADS] = chosen or "1"  # which it reads when it is loaded
+    try:
+        return _loaded_lapack(Path(scipy.__file__).parent)
+    finally:
+        if chosen is None:
+            del os.environ[_THREADS]
+
+
+def _loaded_lapack(scipy_folder: Path) -> Any:
+    spec = PathFinder.find_spec(HOLDS_LAPACK, [str(scipy_folder / "linalg")])
     if spec is None or spec.loader is None:
         import scipy.linalg.lapack
 

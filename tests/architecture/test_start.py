@@ -105,3 +105,15 @@ def test_the_command_line_keeps_to_one_thread_of_linear_algebra_unless_a_person_
         + told
         + "assert os.environ['OPENBLAS_NUM_THREADS'] == '2'"
     )
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are counted there")
+def test_statics_of_scripts_keep_to_one_thread_of_linear_algebra() -> None:
+    """Threads that wait for one another take a thousand times as long while other programs take the cores."""
+    loaded_by(
+        "import os\nos.environ.pop('OPENBLAS_NUM_THREADS', None)\nimport numpy\n"
+        "threads = os.listdir('/proc/self/task')\n"
+        "from pinjoint.systems.statics.factor import lapack\nlapack()\n"
+        "assert 'OPENBLAS_NUM_THREADS' not in os.environ, 'for what else is loaded'\n"
+        "assert os.listdir('/proc/self/task') == threads"
+    )

@@ -86,3 +86,12 @@ def test_the_ball_crosses_the_bridge() -> None:
     assert "thrown at 4.6" in session.notice
     run_frames(session, 240)
     assert place(session, "ball")[0] > 4.0
+
+
+def test_ropes_of_the_bridge_yield_where_a_lifted_plank_falls() -> None:
+    session = opened("rope_bridge")
+    run_frames(session, 30)
+    drag(session, "plank 11", (0.0, 2.0), 15, held=40)
+    assert session.energy.dissipated_plastic == 0.0
+    run_frames(session, 90)
+    assert session.energy.dissipated_plastic > 10.0
