@@ -162,5 +162,5 @@ def test_what_is_rewritten_is_kept_until_it_or_a_constant_in_it_changes(
     assert printed("FACTOR = 2.0") == "4.0 nan grown roots"
     assert printed("FACTOR = 2.0") == "4.0 nan"
     assert printed("from factors import FACTOR") == "6.0 nan grown roots"
-    assert printed("from factors import FACTOR", 5.0) == "10.0 nan grown"
-    assert printed("from factors import FACTOR", 5.0) == "10.0 nan"
+    assert printed("from factors import FACTOR", 50.0) == "100.0 nan grown"
+    assert printed("from factors import FACTOR", 50.0) == "100.0 nan"
