@@ -114,8 +114,10 @@ def place_labels(
         occupancy.parts.gather(np.concatenate([label.places for label in ranked]))
     values, names = ([label for label in ranked if (len(label.anchors) == 0) == name] for name in (False, True))
     left = at.beside(values, covering=False)
-    spare = at.led([n for n in left if n.lines == "spare"], range(1), _LENGTHS[:_NEAR], over=False)
-    left = [n for n in left if n.lines != "spare"] + at.beside(spare)
+    spare, cover = ([n for n in left if (n.lines == "spare") == way] for way in (True, False))
+    results, given = ([n for n in spare if n.is_given() == way] for way in (False, True))
+    spare = given + at.led(results, range(1), _LENGTHS[:_NEAR], over=False)
+    left = cover + at.beside(sorted(spare, key=lambda n: n.rank))
     left.sort(key=lambda n: (n.is_given(), n.rank))
     for smaller, over in ((False, False), (True, False), (True, True)) if left else ():
         if smaller and not over:
