@@ -535,7 +535,8 @@ def _ends_of_lines(sheet: Sheet, diagram: _Diagram, which: Rows, shares: Values,
     along = shares[:, None] + np.clip(insets * sheet.unit / np.maximum(length, 1e-9), -0.4, 0.4)
     along = np.clip(along, 0.0, 1.0)
     at, normal = stations(diagram.base.some(which), along, diagram.side[which])
-    height = diagram.scale * diagram.curves.some(which).at(along)
+    value = diagram.curves.some(which).at(along)
+    height = diagram.scale * np.where(np.abs(value) > SMALLEST, value, 0.0)  # smaller ones are drawn as none
     up = np.array([1.0, 0.0, 0.5]) * height[..., None]
     return (at[:, :, None] + up[..., None] * normal[:, :, None]).reshape(len(which), -1, 2)
 
