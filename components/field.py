@@ -313,7 +313,7 @@ class Field(Generic[T]):
             raise self._refusal(refusal, where, value, parts=parts)
         values = list(value)
         if len(values) != self.shape[0]:
-            message = marked("{where}: {title} has {count} entries; it must have two, {parts}.")
+            message = marked("{where}: {title} needs two entries, {parts}; it has {count}.")
             raise self._refusal(message, where, value, count=len(values), parts=parts)
         return values
 

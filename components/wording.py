@@ -65,9 +65,10 @@ def as_json(value: Any) -> str:
 
 
 def nearest(name: str, names: Collection[str], cutoff: float = 0.6) -> str | None:
-    """The one of some names that comes nearest, whatever its capitals; None if none comes near."""
-    folded = {known.casefold(): known for known in names}
-    found = difflib.get_close_matches(name[:LONGEST].casefold(), folded, n=1, cutoff=cutoff)
+    """The one of some names that comes nearest, whatever its capitals and the order of its words; None if none does."""
+    words, folded = set(name.casefold().split("_")), {known.casefold(): known for known in names}
+    found = [known for known in folded if set(known.split("_")) == words]
+    found += difflib.get_close_matches(name[:LONGEST].casefold(), folded, n=1, cutoff=cutoff)
     return folded[found[0]] if found else None
 
 

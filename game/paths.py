@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Collection, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from decimal import DecimalException
@@ -161,14 +161,14 @@ def _known(name: str, names: Collection[str], refusal: str) -> str:
     return name
 
 
-def _element(table: Table[Any], rest: str, known: Container[str]) -> tuple[str, str]:
+def _element(table: Table[Any], rest: str, known: Collection[str]) -> tuple[str, str]:
     """The name of the element at the beginning of `rest` ("" in a table with a single one), and the text after it."""
     if table.kind.single:
         return "", rest
     cuts = [index for index, character in enumerate(rest) if character == "."]
     named = [cut for cut in cuts if rest[:cut] == EVERY or rest[:cut] in table]
     if not named:
-        _refuse_name(table, rest)
+        _refuse_name(table, rest, known)
     # Of the names "B" and "B.1", the longest that a key follows is meant.
     with_key = [cut for cut in named if _before_value(rest[cut + 1 :]).strip().partition(".")[0] in known]
     cut = (with_key or named)[-1]
@@ -179,8 +179,14 @@ def _before_value(rest: str) -> str:
     return re.split("[=~]", rest, maxsplit=1)[0]  # "=" gives a value, "~" a distribution of values
 
 
-def _refuse_name(table: Table[Any], rest: str) -> None:
-    parts = _before_value(rest).split(".")
+def _refuse_name(table: Table[Any], rest: str, known: Collection[str]) -> None:
+    if (whole := _before_value(rest).strip()) in table:
+        raise PathError(
+            "what is meant of it is missing; write {form}, with one of {keys}.",
+            form=f"{table.name}.{whole}.KEY",
+            keys=", ".join(known),
+        )
+    parts = whole.split(".")
     name = ".".join(parts[: -2 if parts[-1] in ("x", "y", *ENDS) else -1])
     if not name:
         raise PathError(

@@ -207,6 +207,8 @@ def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most
     factor = factor or regular(matrix, weight)
     if len(weight) == 0 or most == 0 or not factor.exists:
         return np.zeros((len(weight), 0))
+    if isinstance(matrix, np.ndarray) and regular(matrix, weight, -SOFT).definite:  # in a quarter of the time
+        return np.zeros((len(weight), 0))
     root = np.sqrt(weight)
     block = pseudo_random(len(weight), min(most, len(weight)))
     for _ in range(4):

@@ -103,7 +103,8 @@ class Loading:
             slack, places = path.branches(before.response).slack, (before.displacement, self.point.displacement)
             event = first_order_mechanism(self.model, self.factor(0.0), structure.fields(modes), slack, *places)
             self.events.append(event)
-        tangent = path.tangent(self.point)
+        if self.point is not before:
+            tangent = path.tangent(self.point)
         path.reference = path.size(tangent.rate)
         return tangent
 

@@ -108,7 +108,7 @@ def test_a_moment_that_can_turn_nothing_is_told_with_the_remedy() -> None:
         ({"bending_stiffness": float("inf")}, "bending stiffness is inf"),
         ({"bending_stiffness": -1.0}, "bending stiffness is -1 kN·m²; it must be at least 0"),
         ({"second_moment": 0.0}, "second moment is 0 m⁴; it must be greater than 0|IPE 200 has another value"),
-        ({"hinged": [True]}, r"hinged has 1 entries; it must have two, \[start, end\]"),
+        ({"hinged": [True]}, r"hinged needs two entries, \[start, end\]; it has 1"),
         ({"hinged": "yes"}, r"hinged is 'yes'; it must be a pair of true or false, \[start, end\]"),
         ({"hinged": [1, 0]}, "must be true or false"),
         ({"distributed_force": [0.0, float("inf")]}, "distributed force y is inf"),

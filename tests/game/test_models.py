@@ -155,7 +155,7 @@ REFUSED_ELEMENTS: dict[str, tuple[str, dict[Any, Any], str, str]] = {
     "one number": ("particles", Z | {"position": 4}, ".position", "is 4; it must be a pair of numbers"),
     "text": ("particles", Z | {"position": [0, "5"]}, ".position", "y is '5'; it must be a number"),
     "flag": ("particles", Z | {"position": [True, 5]}, ".position", "x is True; it must be a number"),
-    "three": ("particles", Z | {"force": [1, 2, 3]}, ".force", "has 3 entries; it must have two"),
+    "three": ("particles", Z | {"force": [1, 2, 3]}, ".force", "needs two entries, [x, y]; it has 3"),
     "nan": ("particles", Z | {"position": [0, math.nan]}, ".position", "y is nan; it must be a finite"),
     "huge": ("particles", Z | {"position": [10**400, 0]}, ".position", "must be a finite number"),
     "number as flag": ("particles", Z | {"fixed": [0, 1]}, ".fixed", "must be true or false"),

@@ -101,7 +101,7 @@ def test_a_value_is_normalised(field: Field[Any], value: Any, expected: Any) -> 
         (number(shape=(2,)), "12", "rod AB: push is '12'; it must be a pair of numbers, [x, y]."),
         (number(shape=(2,)), {1.0, 2.0}, "it must be a pair of numbers, [x, y]."),
         (number(shape=(2,)), {"x": 1, "y": 2}, "it must be a pair of numbers, [x, y]."),
-        (number(shape=(2,)), [1, 2, 3], "rod AB: push has 3 entries; it must have two, [x, y]."),
+        (number(shape=(2,)), [1, 2, 3], "rod AB: push needs two entries, [x, y]; it has 3."),
         (number(shape=(2,)), [1, math.nan], "rod AB: push y is nan; it must be a finite number."),
         (number(shape=(2,)), np.ones((2, 2)), "it must be a number."),
         (number(dtype=bool), 1, "rod AB: push is 1; it must be true or false."),

@@ -66,3 +66,4 @@ def test_what_is_meant_is_told(name: str, names: list[str], said: str) -> None:
 
 def test_nothing_near_is_nothing() -> None:
     assert nearest("Q", ["A"]) is None
+    assert nearest("rotation_fixed", ["rotation", "fixed_rotation"]) == "fixed_rotation"
