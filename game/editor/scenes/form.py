@@ -163,7 +163,6 @@ class FormScene(Scene):
                     self.typing.select(box)
                 if box.accepts in (WORD, NAME) and box.words == YES_NO:
                     self.typing.turn_word(box)
-                    box.held = box.text  # it acts at the click, so that Esc after it leaves it
                     self.changed(context)
                 elif box.accepts in (WORD, NAME):
                     words = (Tool("choose word", box.said_word(w), pressed=w == box.text) for w in box.words)
