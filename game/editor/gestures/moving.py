@@ -204,7 +204,7 @@ class PullParticle(Gesture):
             return
         context.document.timeline.hold(hand)
         speed = written.stated(math.hypot(*hand.thrown), "m/s", 3)
-        tell(context, tr("thrown at {speed}", speed=speed), self._particle)
+        tell(context, tr("thrown at {speed}.", speed=speed), self._particle)
 
     def _flick(self, context: Context) -> Vector | None:
         """The velocity of the pointer (m/s) over the last LATELY seconds shown; None if it moved less than FLICK."""

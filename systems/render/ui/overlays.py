@@ -384,11 +384,12 @@ def place_scale(sheet: Sheet, room: tuple[float, float]) -> tuple[Rectangle, flo
     notes; None if there is none.
 
     There is room for how many values are hidden, before that is known; this is said alone, and over rods, in need.
+    Where the notes have no place, the ruler still can have one.
     """
     v, u, values = sheet.viewport, sheet.unit, hidden_values(sheet, {})
     length = round_down(min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale)
     notes = _displacements(sheet) + sheet.notes
-    for metres, said in ((length, notes), (0.0, notes), *([(0.0, list[str]())] if values else [])):
+    for said, metres in product((notes, []), (length, 0.0)):
         whole = _scale(sheet, metres, values, said)
         if whole is None or (width := whole.width(u)) > v.width - 2 * EDGE * u:
             continue

@@ -110,6 +110,7 @@ def test_a_flick_throws_at_the_velocity_of_the_pointer() -> None:
     session.frame(FRAME)
     flick(session, (0.0, 0.0), (1.2, -0.6))
     assert "thrown at 6.7" in session.notice  # √5 · 0.6 m in 12/60 s
+    assert session.notice.endswith(" m/s.")  # events follow it as sentences
     assert session.particles["A"].velocity == pytest.approx((6.0, -3.0), rel=1e-9)
     run_frames(session, 6)
     assert session.particles["A"].velocity == pytest.approx((6.0, -3.0), rel=1e-9)

@@ -36,6 +36,14 @@ def test_displacements_too_small_to_be_seen_are_told(displacement: float, told: 
     assert said not in " ".join(picture_of(model, width=900).texts)
 
 
+def test_the_ruler_stays_where_there_is_no_room_for_what_is_said_beside_it() -> None:
+    model = triangle()
+    model.particles["B"].displacement = (4.3e-4, 0.0)
+    texts = picture_of(model, width=400).texts
+    assert "50 cm" in texts
+    assert not any("too small" in text for text in texts)
+
+
 def test_legend_names_only_what_occurs() -> None:
     meanings = {"tension (kN)", "compression (kN)", "yielding", "load (kN)", "reaction (kN)"}
     model = triangle()
