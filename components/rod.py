@@ -120,7 +120,7 @@ class Rod(Handle):
     plastic_moment: Field[float | None] = if_known(
         "kN·m",
         absent="unlimited",
-        doc="Bending moment at which its ends yield, as plastic hinges; unlimited ones may be those of sections (settings).",
+        doc="Bending moment at which its ends yield (plastic hinges); else its section's, by “plastic hinges of sections”.",
     )
     damping: Field[float] = Field(
         "kN·s/m",

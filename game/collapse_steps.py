@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pinjoint.components.field import ENDS, MOVED
-from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.language import joined, marked, tr, tr_in
 from pinjoint.components.model import Model
-from pinjoint.components.rod import can_collapse
+from pinjoint.components.rod import Rod, can_collapse
 from pinjoint.components.theory import FIRST_ORDER
+from pinjoint.components.wording import as_said
 from pinjoint.tables import Column, Table
 
 if TYPE_CHECKING:  # statics takes a tenth of a second to import
@@ -55,10 +56,11 @@ def collapse_steps(model: Model, found: LimitLoad | None = None) -> Table | None
         elif event.kind == "hinge":
             row, end = names.index(event.place["rod"]), ENDS.index(event.place["end"])
             sections[row, end] = f"M {event.place['rod']}.{event.place['end']}"
-            said = [tr(_SAID["hinge"], particle=event.place["particle"], rod=event.place["rod"])]
+            rod = model.rods[row]
+            said = [tr(_SAID["hinge"], particle=rod.ends[end].said, rod=rod.said)]
         else:
             rods |= {names.index(rod): f"N {rod}" for rod in event.rods}
-            said = [tr(_SAID[event.kind], rod=rod) for rod in event.rods]
+            said = [tr(_SAID[event.kind], rod=as_said(Rod.noun, rod)) for rod in event.rods]
         told[-1][1].extend(one for one in said if one not in told[-1][1])
         if event.kind in _LAST:
             break
@@ -72,11 +74,17 @@ def collapse_steps(model: Model, found: LimitLoad | None = None) -> Table | None
     particle, axis = np.unravel_index(int(np.abs(moved[-1]).argmax()), moved[-1].shape)
     columns = [Column("λ", "", np.array([factor for factor, _ in told]), key="load_factor", alike=False)]
     columns += [
-        Column(title, "kN·m", moments[:, row, end], key=title) for (row, end), title in sections.items()
+        Column(
+            f"M {model.rods[row].said}.{tr_in('end of a rod', ENDS[end])}",
+            "kN·m",
+            moments[:, row, end],
+            key=key,
+        )
+        for (row, end), key in sections.items()
     ]
-    columns += [Column(title, "kN", forces[:, row], key=title) for row, title in rods.items()]
-    title = f"u{'xy'[axis]} {model.particles.names[particle]}"
-    columns.append(Column(title, MOVED[0], MOVED[1] * moved[:, particle, axis], key=title))
+    columns += [Column(f"N {model.rods[row].said}", "kN", forces[:, row], key=key) for row, key in rods.items()]
+    most, key = model.particles[int(particle)], f"u{'xy'[axis]} {model.particles.names[particle]}"
+    columns.append(Column(f"u{'xy'[axis]} {most.said}", MOVED[0], MOVED[1] * moved[:, particle, axis], key=key))
     return Table(
         tr("step"), [f"{k}: {joined(said, ', ')}" for k, (_, said) in enumerate(told, start=1)], columns
     )

@@ -128,6 +128,10 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]:
         (row,) = rows
         if rods.bending_stiffness[row]:
             yield _largest_moment(columns, int(row))
+        if np.isfinite(limit := rods.moment_limit.min(axis=1))[row]:
+            yield _result(
+                tr("plastic moment"), _number(limit[row], limit[row : row + 1], "kN·m"), Rod.plastic_moment
+            )
         strain, length = 1000.0 * columns("rods.strain"), columns("rods.length") * CM[1]
         yield _result(tr("strain"), _number(strain[row], strain, "‰"), Rod.strain)
         if not math.isnan(rods.area[row]):
@@ -186,7 +190,7 @@ def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]
     used, text = utilisation(columns.model)[rows] if columns.known else np.full(len(rows), np.nan), "—"
     if not np.isnan(used).all():
         most = int(np.nanargmax(used))
-        whose = f" ({rods.column('name')[rows[most]]})" if len(rows) > 1 else ""
+        whose = f" ({columns.model.rods[int(rows[most])].said})" if len(rows) > 1 else ""
         text = f"{written.share(used[most])}{whose}"
     several = len(rows) > 1
     told = marked("The largest stress, |N|/A + |M|/W, divided by the yield stress.")

@@ -42,17 +42,17 @@ class Typing:
         box = self.form.selected
         if box is None:
             return ""
-        typed = box.text
+        typed, changed = box.said_text, box.text not in ("", box.held)
         self.put(box, box.held)
         self.select(None)
-        if typed in ("", box.held):
+        if not changed:
             return ""
-        if box.held:
+        if box.text:
             told = tr(
                 "“{typed}” was discarded; {title} is still {value}.",
                 typed=typed,
                 title=box.said_title,
-                value=box.held,
+                value=box.said_text,
             )
         else:
             told = tr("“{typed}” was discarded; {title} is as before.", typed=typed, title=box.said_title)

@@ -13,13 +13,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_919,
+    "lines": 72_931,
     "files": 389,
     "names": 3_900,  # functions, classes and constants of modules
     "public names": 2_236,
     "numbers": 1_486,  # other than 0, 1 and 2, in constants and defaults
     "registers": 47,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 61_244,
+    "lines of tests": 61_287,
 }
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from pinjoint import Session
+from pinjoint.components.language import spoken
 from pinjoint.components.model import Model
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.toolbar import Menu, Tool
@@ -363,6 +364,16 @@ def test_a_model_is_saved_and_replaced_by_mouse(session: Session, data: Path) ->
         assert session.scene == "pause"
         saved = models.load(data / "models" / "hyperstatic.json")
         assert saved.rods["AB"].stiffness == stiffness
+
+
+def test_escape_says_in_the_present_language_which_word_was_not_taken(session: Session) -> None:
+    session.select(session.rods["AB"])
+    with spoken("pt"):
+        session.press("return")
+        session.click_box("tension only")
+        session.type("s")
+        session.press("escape")
+        assert session.message.startswith("“sim” foi rejeitado; só tração continua a ser não.")
 
 
 def test_escape_says_what_was_typed_and_not_taken(session: Session) -> None:

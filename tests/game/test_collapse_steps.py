@@ -9,6 +9,7 @@ import pytest
 from pinjoint import Session
 from pinjoint.collapse_steps import collapse_steps
 from pinjoint.commands.command_line import main
+from pinjoint.components.language import spoken
 from pinjoint.documents import models
 from pinjoint.sheet import Solved
 from tests.verification.test_limit_analysis import MP, portal
@@ -50,6 +51,15 @@ def test_it_is_told_on_the_command_line_in_the_window_and_on_the_sheet(
     solved = Solved(models.load(document), "first-order")
     assert solved.steps is not None
     assert [shape.title for shape in solved.collapse] == ["Collapse by limit analysis: load × 4.286"]
+
+
+def test_names_that_nobody_gave_are_told_in_the_present_language() -> None:
+    text = json.dumps(portal(10.0, 20.0)).replace('"DE"', '"rod 4"').replace('"D"', '"particle 4"')
+    with spoken("pt"):
+        table = collapse_steps(models.load(json.loads(text)))
+    assert table is not None
+    assert table.names[0] == "1: rótula em partícula 4, barra 4"
+    assert (table.columns[1].title, table.columns[1].key) == ("M barra 4.início", "M rod 4.start")
 
 
 def test_nothing_is_told_where_nothing_limits_the_load() -> None:

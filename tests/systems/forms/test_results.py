@@ -8,6 +8,7 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.components.bent import farthest
+from pinjoint.components.language import spoken
 from pinjoint.documents import models
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.systems.forms.results import results
@@ -37,6 +38,27 @@ def test_a_rod_says_its_force_utilisation_strain_and_length() -> None:
     assert shown["utilisation"] == "92.1 %"
     assert shown["strain"] == "−1.203 ‰"
     assert shown["length"] == "141.3 cm"
+
+
+def test_the_most_used_of_several_rods_is_named_in_the_present_language() -> None:
+    session = at_rest(tensile_strength=215, compressive_strength=215)
+    session.rods["BC"].name = "rod 7"
+    session.select(*session.rods)
+    with spoken("pt"):
+        session.press("return")
+        assert readings(session)["maior aproveitamento"] == "92,1 % (barra 7)"
+
+
+def test_a_rod_whose_section_forms_plastic_hinges_says_its_plastic_moment() -> None:
+    session = Session.open("portal_collapse")
+    session.rods.plastic_moment = None
+    session.rods.section, session.rods.material = "IPE 200", "S235"
+    for of_sections in (False, True):
+        session.model.settings.plastic_hinges = of_sections
+        session.select(session.model.rods[0])
+        session.press("return")
+        assert readings(session).get("plastic moment") == ("51.85 kN·m" if of_sections else None)
+        session.press("escape")
 
 
 def test_a_rod_without_strength_has_no_utilisation() -> None:
