@@ -401,13 +401,6 @@ def diagrams(
     where forces act on them.
     """
     rods, (axial_force, moment) = world.tables["rods"], forces
-    if not (
-        rods.bending_stiffness.any() or rods.span_load.any()
-    ):  # of a truss: an eighth of the time of settling it
-        none = np.zeros((rods.count, 2))
-        names = "end_axial_force", "shear", "bending_moment", "end_rotation", "largest_moment"
-        along = axial_force[:, None] + none, none, none, chord[:, None] + none, none
-        return dict(zip(names, along, strict=True))
     between, bent = Kinks.of(world, share), 0.0 if first_order else 1.0
     slopes = rigid_slopes(rods, rotation, chord)
     couple = share * rods.span_load[:, 6] - bent * share * (on_axis(rods.span_load, axis)[0] * slopes).sum(
