@@ -13,7 +13,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 72_927,
+    "lines": 72_926,
     "files": 389,
     "names": 3_900,  # functions, classes and constants of modules
     "public names": 2_236,

@@ -30,10 +30,8 @@ LEADER_OPACITY, _DOT = 0.75, 1.75  # of these lines, and points, radius of the d
 _TURNS = np.array([0, *(way * k for k in range(1, 8) for way in (1, -1)), 8]) * np.pi / 8.0  # from the best way
 _LENGTHS = (14.0, 26.0, 40.0, 58.0, 80.0, 110.0, 150.0, 200.0)  # points
 _WAYS = len(_TURNS) * len(_LENGTHS)  # of lines from one anchor
-_NEAR, _USUAL = (
-    3,
-    5,
-)  # of these lengths, of lines to values that need not cover a rod, and of lines from values in their usual type
+# Of these lengths, of lines to values that need not cover a rod, and to values in their usual type.
+_NEAR, _USUAL = 3, 5
 _STEP, _HALF = 4.0, 1.5  # points between the places where a line is tested; half the room it needs there
 _CLEAR, _OFF_DIAGRAMS = 3.0, 1.0  # points between a value and all else
 _NEAR_NUMBERS = (0.5, -1.0, 0.5), (0.5, -1.0, -1.0)  # points from numbers to lines, diagrams, symbols of others
@@ -355,11 +353,12 @@ def _codes(labels: Sequence[Label], occupancy: Occupancy) -> tuple[Codes, Codes]
 
 
 def _attempts(
-    labels: Sequence[Label], of: Rows, held: Truths, cells: Rows, occupancy: Occupancy, in_need: bool
+    labels: Sequence[Label], of: Rows, held: Truths, cells: Rows, occupancy: Occupancy, covering: bool
 ) -> Rows:
     """The places free of panels and lines, all of one label in the order in which to try them, then those of the next.
 
     of: the label of each place. held: whether the label was there in the last picture. cells: (k, 4) of each place.
+    covering: as of `beside`.
     """
     kinds = np.array([label.lines for label in labels])
     strengths = sorted({strength for lines in set(kinds.tolist()) for strength in _COVERED[lines]})
@@ -367,8 +366,8 @@ def _attempts(
     attempts = [np.empty(0, dtype=np.intp)]
     for lines, coverings in _COVERED.items():
         theirs = np.flatnonzero((kinds == lines)[of])
-        for covering in (coverings if in_need else coverings[:1]) if len(theirs) else ():
-            possible = theirs[free[covering][theirs]]
+        for strength in (coverings if covering else coverings[:1]) if len(theirs) else ():
+            possible = theirs[free[strength][theirs]]
             attempts += [possible[held[possible]], possible]
     tried = np.concatenate(attempts)
     return tried[np.argsort(of[tried], kind="stable")]
